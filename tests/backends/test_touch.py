@@ -7,8 +7,11 @@ from __future__ import annotations
 
 import mujoco
 import numpy as np
+import pytest
 
 from thermograsp.touch import ThermalTouch, prepare
+from thermograsp.touch.contacts.round_pads import BEND, CURVES, array_on_ellipsoid, array_round_contact
+from thermograsp.touch.contacts.views import ellipsoid_radii
 
 from .conftest import Kind
 
@@ -29,7 +32,7 @@ CAN = """
     <geom name="left_pad" type="box" size=".004 .01 .01" mass=".1"/></body>
   <body name="right" pos=".0345 0 0"><joint type="slide" axis="-1 0 0" damping="20"/>
     <geom name="right_pad" type="box" size=".004 .01 .01" mass=".1"/></body>
-  <body name="can"><geom type="cylinder" size=".03 .05"/></body>
+  <body name="can"><geom {}/></body>
 </worldbody></mujoco>"""
 
 
@@ -52,10 +55,14 @@ def test_fixed_places_are_numpy_s(kind: Kind) -> None:
         assert drop.dtype == kind.float64.dtype
 
 
-def test_contacts_are_felt_as_in_numpy(kind: Kind) -> None:
-    """A can between two fingers, by strips and in worlds of two materials, in one function of the record."""
+@pytest.mark.parametrize(
+    "geom", ['type="cylinder" size=".03 .05"', 'type="ellipsoid" size=".03 .02 .09" euler="0 0 10"']
+)
+def test_contacts_are_felt_as_in_numpy(kind: Kind, geom: str) -> None:
+    """A can between two fingers, by strips and in worlds of two materials, in one function of the record; and an egg
+    between the radii of its sides."""
     tips = {"left": "left_pad", "right": "right_pad"}
-    model = prepare(mujoco.MjSpec.from_string(CAN), tips, {"can": "glass"})
+    model = prepare(mujoco.MjSpec.from_string(CAN.format(geom)), tips, {"can": "glass"})
     data, rows = mujoco.MjData(model), []
     for _ in range(200):
         data.qfrc_applied[:2] = 8.0
@@ -86,3 +93,27 @@ def test_contacts_are_felt_as_in_numpy(kind: Kind) -> None:
     cleared, first = fixed.reset(state, worlds), fixed.start()
     np.testing.assert_array_equal(np.asarray(cleared.heat[1]), np.asarray(first.heat[1]))
     np.testing.assert_array_equal(np.asarray(cleared.heat[0]), np.asarray(state.heat[0]))
+
+
+def test_round_pads_on_ellipsoids_touch_as_in_numpy(kind: Kind) -> None:
+    """Without a compiler, which takes minutes for them."""
+    rng, radii = np.random.default_rng(4), np.array([ellipsoid_radii((0.02, 0.008, 0.03)), [0.0] * 4])
+    turn = np.linalg.qr(rng.normal(size=(5, 2, 3, 3)))[0]
+    curve, bend = rng.uniform(30.0, 90.0, (5, 2, CURVES)), rng.uniform(40.0, 200.0, (5, 2, BEND))
+    curve[..., 2:], bend[..., 3:7], bend[..., 8:] = 10.0, 0.004, 0.008
+    bend[..., 2] = bend[..., 7] = 2e9
+    lean, off, force = (
+        rng.uniform(-0.4, 0.4, (5, 2, 2)),
+        rng.uniform(-0.002, 0.002, (5, 2, 2)),
+        np.full((5, 2), 4.0),
+    )
+
+    def touched(radii, curve, bend, lean, turn, off, force):
+        sides = array_on_ellipsoid(radii, curve, lean, turn[..., 0], turn[..., 1:])
+        found = array_round_contact(bend, curve, sides, 0.0 * off, force, off[..., 0], off[..., 1])
+        return sides, *found
+
+    numbers = radii, curve, bend, lean, turn, off, force
+    for found, expected in zip(touched(*map(kind.of, numbers)), touched(*numbers), strict=True):
+        assert np.isfinite(expected).all()
+        np.testing.assert_allclose(np.asarray(found), expected, rtol=1e-9)

@@ -33,6 +33,16 @@ def test_a_block_and_a_ball_are_felt_as_their_meshes(
         assert touch["mesh"] == pytest.approx(touch["geom"], rel=0.04)
 
 
+def test_an_ellipsoid_is_felt_as_its_mesh_also_between_its_axes(
+    study: ModuleType, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where a view of the mesh is near: 0.0589 W/K at 45 degrees by the nearest axis, 0.0207 of the mesh."""
+    monkeypatch.setitem(study.TOUCHES, "ellipsoid", ((0.0, 0.0), (10.0, None), (45.0, None), (90.0, 0.0)))
+    study.main(["ellipsoid", "--seconds", "0.3", "--json"])
+    for touch in map(json.loads, capsys.readouterr().out.splitlines()):
+        assert touch["geom"] == pytest.approx(touch["mesh"], rel=0.06)
+
+
 def test_an_unknown_solid_is_named(study: ModuleType, capsys: pytest.CaptureFixture) -> None:
     with pytest.raises(SystemExit):
         study.main(["torus"])

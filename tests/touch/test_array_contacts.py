@@ -33,6 +33,7 @@ OBJECTS = {
     "lying can": '<geom type="cylinder" size=".02 .02" euler="0 90 0" mass=".2"/>',
     "mesh": '<geom type="mesh" mesh="tent" mass=".2"/>',
     "egg": '<geom type="ellipsoid" size=".02 .02 .03" mass=".2"/>',
+    "turned egg": '<geom type="ellipsoid" size=".02 .008 .03" euler="0 40 20" mass=".2"/>',
 }
 SCENE = """
 <mujoco><option timestep=".002" cone="elliptic" impratio="10"/><asset><mesh name="tent"

@@ -33,9 +33,9 @@ from ...thermal.numerics import Array, as_integers, as_like, namespace_of
 from ..scene import BodyShape, PadPlace
 from .laws import pair_laws
 from .pad_contacts import DEPTH, LOOKING, RIM
-from .round_pads import array_round_contact, bends, curves
+from .round_pads import array_on_ellipsoid, array_round_contact, bends, curves
 from .tilt import RADIUS, TILT, array_tilted
-from .views import array_viewed
+from .views import array_between_sides, array_next_sides, array_viewed
 
 _ACROSS = [[[0, 1, 0], [0, 0, 1]], [[1, 0, 0], [0, 0, 1]], [[1, 0, 0], [0, 1, 0]]]
 
@@ -76,8 +76,9 @@ class ArrayContacts:
     """Pads and objects for steps of arrays. position (F, 3) m and axes (F, 3, 3) of the pads in their bodies' frames,
     half (F, 2) m of their sides, width (F,) m of the sensors. laws: of (V F G 3) records, by material, fingertip, geom
     and axis of the geom's frame. tables: those of curved contacts behind one another, and curved (V F G A) their
-    numbers by axis or, of meshes, by view, -1 for flat ones; tilts (V F G 3, TILT) of rods. numbers: (F, G) integers,
-    the pairs of the first material. views: (G, A, VIEW), and meshed: (G,) 1 for what has some.
+    numbers by axis, of ellipsoids by radius or, of meshes, by view, -1 for flat ones; tilts (V F G 3, TILT) of rods.
+    numbers: (F, G) integers, the pairs of the first material. views: (G, A, VIEW), and meshed: (G,) 1 for what has
+    some. radii: (G, A) m of ellipsoids, 0 of others.
     bend (F, BEND) and curve (G, 3, CURVES) are round_pads.py's; bulging: (F,) 1 for pads that are round. Flat ones
     have the bend of a round one, whose contact is not used. units (3, 3) and across (3, 2, 3): an axis and the two
     others."""
@@ -97,8 +98,10 @@ class ArrayContacts:
     any_bulging: bool
     any_curved: bool
     any_meshed: bool
+    any_rounded: bool
     views: Array
     meshed: Array
+    radii: Array
     units: Array
     across: Array
 
@@ -205,7 +208,12 @@ class ArrayContacts:
             return *flat, shares
         tilts = self.tilts[which]
         aside, along, slope = self._crown(law, tilts[..., RADIUS], off, from_geom, axes, geom_turn)
-        side = axis
+        side = next_side = axis
+        part = 0.0 * from_geom[..., 0]
+        if self.any_rounded:
+            below, above, part = array_next_sides(self.radii, looking)
+            rounded = self.radii[:, 0] + part > part
+            side, next_side = xp.where(rounded, below, axis), xp.where(rounded, above, axis)
         if self.any_meshed:
             view, *seen = array_viewed(self.views, looking, from_geom, law.half_face[..., 0])
             meshed = (self.meshed + 0.0 * axis)[..., None] > 0
@@ -213,8 +221,9 @@ class ArrayContacts:
                 xp.where(meshed, one[..., None], other)
                 for one, other in zip(seen, (aside, along), strict=True)
             )
-            side = xp.where(meshed[..., 0], view, axis)
-        table = self.curved[as_integers(pair * self.views.shape[1] + side)][..., None]
+            side = xp.where(meshed[..., 0], view, side)
+        first_table = pair * self.views.shape[1]
+        table = self.curved[as_integers(first_table + side)][..., None]
         number = as_integers(table.clip(0.0, None))
         whole, lying = array_tilted(tilts[..., None, :], pressed, slope + none, along + none)
         lies = whole > 0
@@ -222,6 +231,16 @@ class ArrayContacts:
         lying = lying / share
         found = array_curved_contact(self.tables, number, lying, aside + none, along + none)
         placed = array_curved_shares(self.tables, number, lying, aside + none, along + none)
+        if self.any_rounded:
+            further = self.curved[as_integers(first_table + next_side)][..., None]
+            further = as_integers(further.clip(0.0, None))
+            larger = array_curved_contact(self.tables, further, lying, aside + none, along + none)
+            others = array_curved_shares(self.tables, further, lying, aside + none, along + none)
+            part = part[..., None] + none
+            *both, ends = array_between_sides(part, found, larger, placed, others)
+            between = part > 0
+            found = tuple(xp.where(between, new, old) for new, old in zip(both, found, strict=True))
+            placed = xp.where(between[..., None], ends, placed)
         conducts, area, long = (
             xp.where(table >= 0, xp.where(lies, share * bent, none), even)
             for bent, even in zip(found, flat, strict=True)
@@ -248,6 +267,11 @@ class ArrayContacts:
         seen = (geom_turn[:, None, :, :, :, None] * axes[:, :, None, :, None, 1:]).sum(-3)  # (B, F, G, 3, 2)
         picked = (of_axis[..., None, None] * self.across).sum(-3)  # (B, F, G, 2, 3)
         sides = (picked[..., None] * seen[..., None, :, :]).sum(-2)
+        if self.any_rounded:
+            ahead = _seen(geom_turn[:, None], axes[:, :, None, :, 0])
+            on_it = array_on_ellipsoid(self.radii, curve, self.bend[:, None, :2] * off, ahead, seen)
+            rounded = (self.radii[:, 0] + 0.0 * off[..., 0] > 0)[..., None, None]
+            sides = xp.where(rounded, on_it, sides)
         facing = (of_axis[..., None] * seen).sum(-2)  # what a flat face looks along
         ahead = (of_axis * _seen(geom_turn[:, None], axes[:, :, None, :, 0])).sum(-1)
         # fingertips and meshes count as level
@@ -338,6 +362,8 @@ def array_contacts(
         any_curved=bool((curved >= 0).any()),
         views=as_like(found[0].views[: len(owner)], like),
         any_meshed=bool(found[0].viewed.any()),
+        any_rounded=bool(found[0].radii.any()),
+        radii=as_like(found[0].radii[: len(owner)], like),
         meshed=as_like((found[0].viewed[: len(owner)] > 0).astype(float), like),
         units=as_like(np.eye(3), like),
         across=as_like(np.array(_ACROSS, float), like),

@@ -40,7 +40,7 @@ from ...thermal.padded import RINGS, ring_sides
 from ...thermal.pressed import PressedMesh, Ring, RoundRing
 from ..scene import BodyShape, PadPlace, is_round, mesh_of
 from .tilt import TILT, tilt_row
-from .views import stacked_views
+from .views import ellipsoid_radii, stacked_views
 
 SQUARE = 0.473  # a square source's mean temperature on a half-space over q/(k side): Carslaw & Jaeger, section 10.5
 _WIDE = 10.0  # m, a face that no pad reaches the end of
@@ -52,10 +52,10 @@ Pressed = PressedMesh | RoundRing
 
 class PairLaws(NamedTuple):
     """laws: (F, N, 3) CONTACT_LAW records, and beside: those of the pads around the sensors, zeros without. curved: (F,
-    N, A) numbers of the tables of what is curved, by axis, and of meshes, by view; -1 for what is flat. around: (F, N,
-    A, RINGS) those of the rings of the pads around the sensors, -1 without. tables: K, (CURVED_TABLE,) each. pressed:
-    of the numbers behind them. tilts: (F, N, 3, TILT) of rods, 0 of others. views: (N, A, VIEW) of meshes, and viewed:
-    (N,) how many."""
+    N, A) numbers of the tables of what is curved, by axis, of ellipsoids by radius, and of meshes by view; -1 for what
+    is flat. around: (F, N, A, RINGS) those of the rings of the pads around the sensors, -1 without. tables: K,
+    (CURVED_TABLE,) each. pressed: of the numbers behind them. tilts: (F, N, 3, TILT) of rods, 0 of others. views: (N,
+    A, VIEW) of meshes, and viewed: (N,) how many. radii: (N, A) m of ellipsoids, 0 of others."""
 
     laws: np.ndarray
     beside: np.ndarray
@@ -66,6 +66,7 @@ class PairLaws(NamedTuple):
     tilts: np.ndarray
     views: np.ndarray
     viewed: np.ndarray
+    radii: np.ndarray
 
     @property
     def all_tables(self) -> np.ndarray:
@@ -80,7 +81,7 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
     geoms = [(shape, geom) for shape in shapes for geom in shape.geoms]
     laws = np.zeros((len(pads), len(geoms) + len(pads), 3), CONTACT_LAW)
     beside = np.zeros_like(laws)
-    views, viewed = stacked_views(model, [geom for _, geom in geoms], len(pads))
+    views, viewed, radii = stacked_views(model, [geom for _, geom in geoms], len(pads))
     numbers = np.full((*laws.shape[:2], views.shape[1], 1 + RINGS), -1, np.int64)
     tables: list[np.ndarray] = []
     tilts, made = np.zeros((*laws.shape, TILT)), dict[Pressed, list[tuple[int, int, int, int]]]()
@@ -106,19 +107,19 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
                     laws["narrowing"][f, g, axis] = narrowing(other, pad.face)
                 if around is not None:
                     beside[f, g, axis] = _law(model, geom, axis, sheet, around)
-                size = _curved(model, geom, axis)
+            for side, size in enumerate(_sides(model, geom)):
                 if size is None or sum(pad.curvature) > 0:
                     continue
                 table = curved_table(silicone, pad.skin, shape.material, *size)
                 if size[1] is not None and flat:
-                    tilts[f, g, axis] = tilt_row(pad, silicone, shape, size[0], size[1])
+                    tilts[f, g, side] = tilt_row(pad, silicone, shape, size[0], size[1])
                 known = [n for n, each in enumerate(tables) if each is table]
-                numbers[f, g, axis, 0] = known[0] if known else len(tables)
+                numbers[f, g, side, 0] = known[0] if known else len(tables)
                 if not known:
                     tables.append(table)
                 for n, ring in enumerate(rings, 1):
                     of_ring = RoundRing(silicone, pad.skin, shape.material, *size, ring)
-                    made.setdefault(of_ring, []).append((f, g, axis, n))
+                    made.setdefault(of_ring, []).append((f, g, side, n))
         for g, other in enumerate(pads, len(geoms)):
             faces = joint(pad.face, other.face, full_contact=(pad.skin or other.skin) is not None)
             side = max(silicone.face, other.silicone.face)
@@ -130,7 +131,16 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
         for pair in pairs:
             numbers[pair] = number
     return PairLaws(
-        laws, beside, numbers[..., 0], numbers[..., 1:], tuple(tables), tuple(made), tilts, views, viewed
+        laws,
+        beside,
+        numbers[..., 0],
+        numbers[..., 1:],
+        tuple(tables),
+        tuple(made),
+        tilts,
+        views,
+        viewed,
+        radii,
     )
 
 
@@ -156,15 +166,23 @@ def stacked(tables: Sequence[np.ndarray]) -> np.ndarray:
     return np.array(tables) if tables else np.zeros((1, CURVED_TABLE))
 
 
-def _curved(model: mujoco.MjModel, geom: int, axis: int) -> tuple[float, float | None] | None:
-    """Radius and length m of the cylinder that a pad meets along that axis, no length of a ball, None where it is
-    flat."""
+_Size = tuple[float, float | None] | None
+"""Radius and length m of the cylinder that a pad meets, no length of a ball, None where it is flat."""
+
+
+def _sides(model: mujoco.MjModel, geom: int) -> list[_Size]:
+    """By axis, of an ellipsoid by radius."""
+    if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_ELLIPSOID:
+        return [(radius, None) for radius in ellipsoid_radii(model.geom_size[geom].tolist())]
+    return [_curved(model, geom, axis) for axis in range(3)]
+
+
+def _curved(model: mujoco.MjModel, geom: int, axis: int) -> _Size:
+    """Along that axis."""
     kind, (a, b, c) = mujoco.mjtGeom(int(model.geom_type[geom])), (float(s) for s in model.geom_size[geom])
     shapes = mujoco.mjtGeom
     if kind == shapes.mjGEOM_ELLIPSOID:
-        # the radii of curvature where an axis leaves it, their geometric mean
-        along, first, second = np.roll((a, b, c), -axis)
-        return float(first * second / along), None
+        return ellipsoid_radii((a, b, c))[axis], None
     if kind in (shapes.mjGEOM_CYLINDER, shapes.mjGEOM_CAPSULE) and axis < 2:
         return a, 2 * b
     if kind in (shapes.mjGEOM_SPHERE, shapes.mjGEOM_CAPSULE):

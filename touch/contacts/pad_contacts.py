@@ -38,7 +38,7 @@ from .columns import (
 from .round_pads import SIDES, round_contact
 from .sensors import FORCE_AT, PLACE_AT
 from .tilt import RADIUS, tilted
-from .views import viewed
+from .views import between_sides, next_sides, viewed
 
 DEPTH = 0.004  # m off the pad's plane, up to which a contact is on it, beside half of what both have sunk in
 RIM = 0.0005  # m beyond the pad's sides
@@ -142,7 +142,7 @@ def _within(pad, x, y, z, sunk):
 @njit(cache=True, inner=True, borrows=True, error_model="numpy", forceinline=True)
 def feel(
     xpos, xmat, geom_xpos, geom_xmat, pads, frames, parts, laws, curved, tables, tilts, bend, curve, pushed, touches,
-    weight, before, spot, views, make,
+    weight, before, spot, views, radii, make,
 ):  # fmt: skip
     """Adds what presses on the pads to the touches, which counts as so many substeps (weight), with so many of the
     sample before. Returns whether every table that it needs could be made."""
@@ -193,18 +193,22 @@ def feel(
                 bulging = bulging or curve[g, 0, 0] + curve[g, 0, 1] > 0
             conducts, area, share, kept, long, narrow = 0.0, 0.0, 0.0, 1.0, 0.0, 1.0
             number, side, first, second, whole, lying = -1, axis, 0.0, 0.0, 1.0, force
+            next_side, part = axis, 0.0  # of an ellipsoid: the side of the next larger radius, and its share
             for k in range(4):
                 shares[k] = 0.0
-            if not bulging and parts[g, 3] > 0:
+            if not bulging and (parts[g, 3] > 0 or radii[g, 0] > 0):
                 for i in range(3):
                     one, two, three = geom_xmat[geom, i], geom_xmat[geom, 3 + i], geom_xmat[geom, 6 + i]
                     sides[i] = one * normal[0] + two * normal[1] + three * normal[2]
+            if not bulging and parts[g, 3] > 0:
                 side, first, second = viewed(views[g], parts[g, 3], sides, place, law.half_face)
                 number = curved[f, g, side, 0]
             elif not bulging and curved[f, g, axis, 0] >= 0:
                 # A round body presses where MuJoCo says, which need not be on the sensor's face.
+                if radii[g, 0] > 0:
+                    side, next_side, part = next_sides(radii[g], sides[:3])
                 number, first, second = (
-                    curved[f, g, axis, 0],
+                    curved[f, g, side, 0],
                     pushed[f, g, 1] / force,
                     pushed[f, g, 2] / force,
                 )
@@ -237,6 +241,11 @@ def feel(
                     sides[7] = place[2] + pushed[f, g, 2] / force
                 if geom < 0 or parts[g, 3] > 0 or curve[g, axis, 0] + curve[g, axis, 1] > 0:
                     sides[4], sides[5] = 0.0, 0.0  # fingertips and meshes count as level
+                if geom >= 0 and radii[g, 0] > 0:
+                    _on_ellipsoid(
+                        geom_xmat, frames, f, geom, radii[g], curve[g, axis], bend[f], pushed[f, g, 1] / force,
+                        pushed[f, g, 2] / force, sides,
+                    )  # fmt: skip
                 area, share, kept, longer, even = round_contact(
                     bend[f], curve[g, axis], sides, force, pushed[f, g, 1] / force, pushed[f, g, 2] / force
                 )
@@ -249,11 +258,16 @@ def feel(
                 if area > 0:
                     long = flat_patch(law, area, place, shares)
             for ring in range(1 + RINGS if pads[f, AROUND] > 0 else 1):
-                known = curved[f, g, side, ring] if number >= 0 else -1
-                if known >= 0 and tables[known, 1] == 0.0 and asked(make, known) == 0:
-                    return False
+                for turn in range(2 if part > 0 else 1):
+                    known = curved[f, g, next_side if turn else side, ring] if number >= 0 else -1
+                    if known >= 0 and tables[known, 1] == 0.0 and asked(make, known) == 0:
+                        return False
             if number >= 0 and whole > 0:
                 conducts, area, long = curved_touch(tables[number], lying / whole, first, second, shares)
+                if part > 0:
+                    others = sides[3:7]  # which an ellipsoid under a flat pad leaves free
+                    larger = curved_touch(tables[curved[f, g, next_side, 0]], lying, first, second, others)
+                    conducts, area, long = between_sides(part, (conducts, area, long), larger, shares, others)
                 conducts, area, long = whole * conducts, whole * area, whole * long
             if share > 0 and area > 0:
                 conducts, area = conductance(law, share / area) * area * kept, area * kept * narrow
@@ -287,6 +301,13 @@ def feel(
                     if number >= 0 and whole > 0:
                         table = tables[curved[f, g, side, 1 + ring]]
                         conducts, area, _ = curved_contact(table, lying / whole, first, second)
+                        if part > 0:
+                            table = tables[curved[f, g, next_side, 1 + ring]]
+                            more, wide, _ = curved_contact(table, lying, first, second)
+                            conducts, area = (
+                                (1 - part) * conducts + part * more,
+                                (1 - part) * area + part * wide,
+                            )
                         conducts, area = whole * conducts, whole * area
                     if conducts > 0:
                         at = BESIDE + 3 * ring
@@ -336,3 +357,32 @@ def _sides(geom_xmat, frames, f, geom, other, axis, sides):
         else:
             sides[2 * n], sides[2 * n + 1] = y, z
             n += 1
+
+
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
+def _on_ellipsoid(geom_xmat, frames, f, geom, radii, curve, bend, y, z, sides):
+    """Fills sides[:4] so that with the curvatures of `curve` they are as curved as the ellipsoid where it looks against
+    a round pad y and z m from its middle. There the radii of curvature are (A - A n n'A/h^2)/h, with A of the half
+    axes' squares, n the normal and h^2 = n'A n: the second derivative of the support function h (Schneider, Convex
+    Bodies, section 2.5)."""
+    lean_y, lean_z = bend[0] * y, bend[1] * z
+    upright = math.sqrt(max(1.0 - lean_y * lean_y - lean_z * lean_z, 0.0))
+    square, on_y, on_z, yy, yz, zz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for i in range(3):
+        along, first, second = 0.0, 0.0, 0.0
+        for k in range(3):
+            points = geom_xmat[geom, 3 * k + i]
+            along += points * frames[f, 3 + k]
+            first += points * frames[f, 6 + k]
+            second += points * frames[f, 9 + k]
+        normal = upright * along + lean_y * first + lean_z * second
+        turned = (along + normal) / (1 + upright)  # the pad's sides turn with its normal, the shortest way
+        first, second = first - lean_y * turned, second - lean_z * turned
+        half = radii[0] * radii[1] * radii[2] / radii[i]  # the half axis's square
+        square += half * normal * normal
+        on_y, on_z = on_y + half * normal * first, on_z + half * normal * second
+        yy, yz, zz = yy + half * first * first, yz + half * first * second, zz + half * second * second
+    yy, yz, zz = yy - on_y * on_y / square, yz - on_y * on_z / square, zz - on_z * on_z / square
+    high = math.sqrt(square)
+    sides[0], sides[2] = math.sqrt(high * zz / (yy * zz - yz * yz) / curve[0]), 0.0
+    sides[1], sides[3] = -sides[0] * yz / zz, math.sqrt(high / zz / curve[1])

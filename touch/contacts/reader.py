@@ -62,7 +62,7 @@ class ContactReader:
         # fingertips too
         parts = [(o, geom, int(model.geom_bodyid[geom])) for o, geom in geoms]
         parts += [(objects + f, -1, pad.body) for f, pad in enumerate(pads)]
-        self._views, viewed = stacked_views(model, [geom for _, geom in geoms], count)
+        self._views, viewed, self._radii = stacked_views(model, [geom for _, geom in geoms], count)
         self._parts = np.column_stack((np.array(parts, np.int64), viewed))
         self._model, self._of_pads, self._shapes = model, tuple(pads), tuple(shapes)
         # of each combination of the objects' materials that there is, and which of them each world has; laws of faces
@@ -138,7 +138,7 @@ class ContactReader:
         arrays = (
             *(self._role, self._pads, self._parts, self._bend, self._curve),
             *(self._pushed, self.touches, self.beside, self._first_laws, self._first_curved, self._tables),
-            *(self._frames, self._spot, self._first_tilts, self._views, self.counted),
+            *(self._frames, self._spot, self._first_tilts, self._views, self._radii, self.counted),
         )
         self._places = None
         sizes = len(self._role), *self.touches.shape[1:3], len(self._parts), len(self._tables)
@@ -181,7 +181,7 @@ class ContactReader:
         arrays = *sensed, self._pads, self._parts, self._laws, self._which, self._bend, self._curve
         room = self._pushed, *self._poses
         sums = self.touches, self.beside, self.broken, self._curved, self._tables
-        sums += self._frames, self._spot, self._tilts, self._views, self.counted
+        sums += self._frames, self._spot, self._tilts, self._views, self._radii, self.counted
         sizes = len(self.beside), places.size, *map(len, sensed[:3]), *self._pushed.shape[:2]
         make = self._views.shape[1], ctypes.cast(self._make, ctypes.c_void_p).value or 0
         return table((*arrays, *room, *sums), (*sizes, self.touches.shape[2], len(self._tables), *make, 0))

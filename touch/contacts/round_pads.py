@@ -36,7 +36,8 @@ BEND, CURVES, SIDES = 10, 7, 8
 """Of a pad: curvatures 1/m along its y and z, stiffness Pa/m, half the sides m of what bears force, half the face's m
 along them, stiffness Pa/m beside a skinned sensor and half the whole pad's sides m. Of what it meets: curvatures 1/m
 and half lengths m along two axes of its frame, how much its own springs give way, m3/N, and half the sides m of its
-sensor's face, of objects none; and how the two lie to one another, round_contact's `sides`."""
+sensor's face, of objects none; and how the two lie to one another, round_contact's `sides`, which of an ellipsoid are
+longer or shorter than 1 where it is more or less curved than on its axis."""
 ALIGNED = 0.05
 """m per m, about 3 degrees, up to which a straight fingertip counts as level: fingers and what they hold give way, and
 so do MuJoCo's soft contacts, whose angles say nothing of less."""
@@ -367,6 +368,32 @@ def array_round_contact(
     )
 
 
+def array_on_ellipsoid(radii: Array, curve: Array, lean: Array, normal: Array, across: Array) -> Array:
+    """(..., G, 2, 2), the sides of ellipsoids that round pads touch, as pad_contacts.py has them, as a pure function of
+    arrays. radii: (G, A) m, 0 of what is none; curve: (..., G, CURVES). lean (..., G, 2): along the pads' y and z of
+    their normals where they touch; normal (..., G, 3) and across (..., G, 3, 2): of the pads' axes along the geoms'."""
+    xp = namespace_of(normal)
+    of_axes = radii[:, :3]
+    of_axes = xp.where(of_axes > 0, of_axes, 1.0 + 0.0 * of_axes)
+    half = of_axes.prod(-1)[:, None] / of_axes
+    upright = (1.0 - (lean * lean).sum(-1)).clip(0.0, None)[..., None] ** 0.5
+    there = upright * normal + (across * lean[..., None, :]).sum(-1)
+    turned = ((normal + there) / (1 + upright))[..., None]
+    across = across - turned * lean[..., None, :]
+    square = (half * there * there).sum(-1)
+    on = (half[..., None] * there[..., None] * across).sum(-2)
+
+    def tensor(i: int, j: int) -> Array:
+        return (half * across[..., i] * across[..., j]).sum(-1) - on[..., i] * on[..., j] / square
+
+    yy, yz, zz, high = tensor(0, 0), tensor(0, 1), tensor(1, 1), square**0.5
+    known = (curve[..., :2] > 0).all(-1)
+    one, other = (xp.where(known, curve[..., n], 1.0 + 0.0 * curve[..., n]) for n in range(2))
+    first, second = (high * zz / (yy * zz - yz * yz) / one) ** 0.5, (high / zz / other) ** 0.5
+    rows = xp.stack([first, -first * yz / zz], -1), xp.stack([0.0 * second, second], -1)
+    return xp.stack(list(rows), -2)
+
+
 def _depths(xp, load, most, least, reach, width):
     depth = xp.maximum((load * (most * least) ** 0.5 / math.pi) ** 0.5, load / (4 * reach * width))
     depth = xp.maximum(depth, (0.375 * load * (most / 2) ** 0.5 / width) ** (2 / 3))
@@ -388,7 +415,7 @@ def _clippings(xp, x, y):
     cap_root = (root * (5 - 2 * root * root) * y + 3 * asin_root) / 8
     load = y * root * (1 - y * y / 3 - root * root / 3) + 2 / 3 * (cap_x - cap_root)
     squared = (
-        root * y * _square_mean(root, y)
+        root * y * _square_means(root, y)
         + 8
         / 15
         * (
@@ -400,8 +427,14 @@ def _clippings(xp, x, y):
     return (
         xp.where(inside, x * y, area),
         xp.where(inside, x * y * (1 - (x * x + y * y) / 3), load),
-        xp.where(inside, x * y * _square_mean(x, y), squared),
+        xp.where(inside, x * y * _square_means(x, y), squared),
     )
+
+
+def _square_means(x, y):
+    """_square_mean of arrays that are not NumPy's, too."""
+    first, second = x * x, y * y
+    return 1 - 2 / 3 * (first + second) + (first * first + second * second) / 5 + 2 / 9 * first * second
 
 
 def _kept_of(xp, at, reach, half):

@@ -49,11 +49,11 @@ def read_contacts(count, substeps, memory_at, entries_at):
     """Adds `count` contacts to touches and beside. memory_at: the address of ContactMemory's table; entries_at: that of
     addresses and sizes of a ContactReader's arrays. Numbers are handed over in a fraction of the time that arrays take.
     Returns 1, and 0 where a force is not finite or a table could not be made."""
-    memory, entries = words(memory_at, WORDS), words(entries_at, 23)
-    counted = words(entries[15], 1)
-    tips, targets, part_count = entries[17], entries[18], entries[19]
-    sides = entries[21]
-    role = words(entries[0], entries[16])
+    memory, entries = words(memory_at, WORDS), words(entries_at, 24)
+    counted = words(entries[16], 1)
+    tips, targets, part_count = entries[18], entries[19], entries[20]
+    sides = entries[22]
+    role = words(entries[0], entries[17])
     pads = floats(entries[1], (tips, PAD))
     parts = words(entries[2], (part_count, 4))
     bend = floats(entries[3], (tips, BEND))
@@ -63,10 +63,10 @@ def read_contacts(count, substeps, memory_at, entries_at):
     beside = floats(entries[7], tips)
     law = laws(entries[8], (tips, part_count, 6))
     curved = words(entries[9], (tips, part_count, sides, 1 + RINGS))
-    tables = floats(entries[10], (entries[20], CURVED_TABLE))
+    tables = floats(entries[10], (entries[21], CURVED_TABLE))
     frames, spot = floats(entries[11], (tips, PLACED)), floats(entries[12], SPOT)
     tilts = floats(entries[13], (tips, part_count, 3, TILT))
-    views = floats(entries[14], (part_count, sides, VIEW))
+    views, radii = floats(entries[14], (part_count, sides, VIEW)), floats(entries[15], (part_count, sides))
     place = words(memory[CONTACTS], 1)[0]
     numbers = floats(place, (count, memory[STRIDE] // 8))
     whole = integers(place, (count, memory[STRIDE] // 4))
@@ -117,7 +117,7 @@ def read_contacts(count, substeps, memory_at, entries_at):
             beside[first] += weight * force
     if any_touch and not feel(
         xpos, xmat, geom_xpos, geom_xmat, pads, frames, parts, law, curved, tables, tilts, bend, curve, pushed,
-        touches, weight, counted[0] - weight, spot, views, entries[22],
+        touches, weight, counted[0] - weight, spot, views, radii, entries[23],
     ):  # fmt: skip
         return 0
     return 1
@@ -128,11 +128,11 @@ def sense_contacts(record_at, first, last, entries_at):
     """read_contacts of recorded sensors, world by world. record_at: the address of the record (W, substeps,
     sensordata), of which the substeps first to last - 1 are read; entries_at: that of ContactReader's `sensing`.
     Returns 1, and 0 where a table could not be made."""
-    entries = words(entries_at, 38)
-    counted = words(entries[25], 1)
-    worlds, size, pairs, poses, geoms = entries[26], entries[27], entries[28], entries[29], entries[30]
-    tips, part_count, targets, sides = entries[31], entries[32], entries[33], entries[35]
-    record = floats(record_at, (worlds, entries[37], size))
+    entries = words(entries_at, 39)
+    counted = words(entries[26], 1)
+    worlds, size, pairs, poses, geoms = entries[27], entries[28], entries[29], entries[30], entries[31]
+    tips, part_count, targets, sides = entries[32], entries[33], entries[34], entries[36]
+    record = floats(record_at, (worlds, entries[38], size))
     pair, pose = words(entries[0], (pairs, 3)), words(entries[1], (poses, 3))
     placed = words(entries[2], (geoms, 2))
     turns, offsets = floats(entries[3], (geoms, 9)), floats(entries[4], (geoms, 3))
@@ -143,8 +143,8 @@ def sense_contacts(record_at, first, last, entries_at):
         kinds = max(kinds, which[w] + 1)
     law = laws(entries[7], (kinds, tips, part_count, 6))
     curved = words(entries[19], (kinds, tips, part_count, sides, 1 + RINGS))
-    tables = floats(entries[20], (entries[34], CURVED_TABLE))
-    views = floats(entries[24], (part_count, sides, VIEW))
+    tables = floats(entries[20], (entries[35], CURVED_TABLE))
+    views, radii = floats(entries[24], (part_count, sides, VIEW)), floats(entries[25], (part_count, sides))
     tilts = floats(entries[23], (kinds, tips, part_count, 3, TILT))
     frames, spot = floats(entries[21], (tips, PLACED)), floats(entries[22], SPOT)
     bend = floats(entries[9], (tips, BEND))
@@ -159,8 +159,8 @@ def sense_contacts(record_at, first, last, entries_at):
         kind = which[w]
         if not _sense_world(
             record, w, first, last, pair, pose, placed, turns, offsets, pads, parts, law[kind], curved[kind], tables,
-            tilts[kind], views, bend, curve, pushed, frames, spot, xpos, xmat, geom_xpos, geom_xmat, touches[w],
-            beside[w], broken, counted[0] - last, entries[36],
+            tilts[kind], views, radii, bend, curve, pushed, frames, spot, xpos, xmat, geom_xpos, geom_xmat, touches[w],
+            beside[w], broken, counted[0] - last, entries[37],
         ):  # fmt: skip
             return 0
     return 1
@@ -168,8 +168,8 @@ def sense_contacts(record_at, first, last, entries_at):
 
 @njit(cache=True, inner=True, borrows=True, error_model="numpy", forceinline=True)
 def _sense_world(
-    record, w, first, last, pair, pose, placed, turns, offsets, pads, parts, laws, curved, tables, tilts, views, bend,
-    curve, pushed, frames, spot, xpos, xmat, geom_xpos, geom_xmat, touches, beside, broken, ahead, make,
+    record, w, first, last, pair, pose, placed, turns, offsets, pads, parts, laws, curved, tables, tilts, views, radii,
+    bend, curve, pushed, frames, spot, xpos, xmat, geom_xpos, geom_xmat, touches, beside, broken, ahead, make,
 ):  # fmt: skip
     """sense_contacts of one world. ahead: how many more substeps the sample has before one than the record. Returns
     whether every table that it needs could be made."""
@@ -229,7 +229,7 @@ def _sense_world(
                 press(data, pair[p, 2], pads, bend, frames, first_tip, part, part_count, pushed, beside)
         if not feel(
             xpos, xmat, geom_xpos, geom_xmat, pads, frames, parts, laws, curved, tables, tilts, bend, curve, pushed,
-            touches, 1.0, float(ahead + n), spot, views, make,
+            touches, 1.0, float(ahead + n), spot, views, radii, make,
         ):  # fmt: skip
             return False
     return True

@@ -1,9 +1,16 @@
-"""The sides from which a pad may meet a mesh: the directions of its hull's faces, and where the pad is as seen there.
+"""The sides from which a pad may meet a mesh or an ellipsoid, whose contacts have a table each.
 
-MuJoCo presses a mesh's hull on pads, so a pad that lies on a mesh looks against a face of its hull. Faces that look
-alike have one view, and a pad belongs to the view that its normal is nearest to. It is turned there about the geom's
-middle, the shortest way: on a ball that is the same place. Elsewhere what it touches has gone along the hull by radii
-of curvature in place of the hull's distance from the middle, both times the sines of the angle, and so is the pad.
+Of a mesh they are the directions of its hull's faces, and where the pad is as seen there. MuJoCo presses a mesh's hull
+on pads, so a pad that lies on a mesh looks against a face of its hull. Faces that look alike have one view, and a pad
+belongs to the view that its normal is nearest to. It is turned there about the geom's middle, the shortest way: on a
+ball that is the same place. Elsewhere what it touches has gone along the hull by radii of curvature in place of the
+hull's distance from the middle, both times the sines of the angle, and so is the pad.
+
+Of an ellipsoid they are radii. A pad that looks along the unit vector n, in the frame of the half axes a_i, touches
+where the geometric mean R of the principal radii is a_1 a_2 a_3/h^2, with h^2 the sum of a_i^2 n_i^2: the Gaussian
+curvature is h^4/(a_1 a_2 a_3)^2 where the tangent plane is h from the middle. With the radii R_i where the axes leave
+it, 1/R is the sum of n_i^2/R_i. What touches is between the contacts of the two sides next to R, evenly by R^BY_RADIUS:
+what balls conduct rises by their radius to powers of .5 to .84, of sides _APART within 2.5 % of that.
 
 N: what a pad may meet.
 """
@@ -16,6 +23,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import lru_cache
+from itertools import pairwise
 from types import ModuleType
 
 import mujoco
@@ -50,6 +58,9 @@ _FLAT = (
 PAD, _POINTS, _PRESSED = Pad(), 40, 10.0
 """What comes to lie on a mesh: a pad, seen at so many points along its side, and N."""
 _SLANT = 0.2  # most of a hull's face between crests
+BY_RADIUS = 0.7
+_APART = 4.0  # at most, the ratio of the radii of two sides of an ellipsoid that follow one another
+_ONE_RADIUS = 1e-6  # relative difference, up to which two radii are one, in single precision too
 
 
 def mesh_views(model: mujoco.MjModel, geom: int) -> np.ndarray:
@@ -165,19 +176,45 @@ def _across(along: np.ndarray) -> np.ndarray:
     return np.stack([along, aside, np.cross(along, aside)])
 
 
-def stacked_views(model: mujoco.MjModel, geoms: Sequence[int], others: int) -> tuple[np.ndarray, np.ndarray]:
-    """(views (N, A, VIEW), their number (N,)) of geoms and, behind them, of others that are no meshes; A at least 3."""
+def ellipsoid_radii(size: Sequence[float]) -> list[float]:
+    """m of the sides of an ellipsoid of these half axes m: the first three where its axes leave it, then others between
+    those that are far apart."""
+    radii: list[float] = []
+    for axis in range(3):
+        along, first, second = np.roll(size, -axis)
+        radius = float(first * second / along)
+        radii.append(
+            next((each for each in radii if math.isclose(each, radius, rel_tol=_ONE_RADIUS)), radius)
+        )
+    for low, high in pairwise(sorted(radii)):
+        steps = math.ceil(math.log(high / low) / math.log(_APART) - _ONE_RADIUS)
+        radii += [low * (high / low) ** (n / steps) for n in range(1, steps)]
+    return radii
+
+
+def stacked_views(
+    model: mujoco.MjModel, geoms: Sequence[int], others: int
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(views (N, A, VIEW) of meshes, their number (N,), radii (N, A) m of the sides of ellipsoids, else 0) of geoms
+    and, behind them, of others that are neither; A at least 3."""
     found = [
         mesh_views(model, geom)
         if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_MESH
         else np.zeros((0, VIEW))
         for geom in geoms
     ]
+    rounded = [
+        ellipsoid_radii(model.geom_size[geom].tolist())
+        if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_ELLIPSOID
+        else []
+        for geom in geoms
+    ]
     counts = np.array([*map(len, found), *[0] * others], np.int64)
-    views = np.zeros((len(counts), max(3, *counts), VIEW))
-    for g, each in enumerate(found):
-        views[g, : len(each)] = each
-    return views, counts
+    most = max(3, *counts, *map(len, rounded))
+    views, radii = np.zeros((len(counts), most, VIEW)), np.zeros((len(counts), most))
+    for g, (each, of_sides) in enumerate(zip(found, rounded, strict=True)):
+        views[g, : len(each)], radii[g, : len(of_sides)] = each, of_sides
+    return views, counts, radii
 
 
 @njit(cache=True, borrows=True, error_model="numpy")
@@ -236,3 +273,74 @@ def _cross(xp: ModuleType, one: Array, other: Array) -> Array:
     x, y, z = (one[..., k] for k in range(3))
     u, v, w = (other[..., k] for k in range(3))
     return xp.stack([y * w - z * v, z * u - x * w, x * v - y * u], -1)
+
+
+@njit(cache=True, borrows=True, error_model="numpy")
+def next_sides(radii, normal):
+    """(numbers of the sides of an ellipsoid with the next smaller and the next larger radius, and the share of the
+    second). radii: (A,) m; normal: (3,) of the pad in the geom's frame."""
+    bent = 0.0
+    for k in range(3):
+        bent += normal[k] * normal[k] / radii[k]
+    radius, below, above = (1 + _ONE_RADIUS) / bent, -1, -1
+    for k in range(len(radii)):
+        if radii[k] > radius:
+            if above < 0 or radii[k] < radii[above]:
+                above = k
+        elif radii[k] > 0 and (below < 0 or radii[k] > radii[below]):
+            below = k
+    if below < 0 or above < 0:
+        return max(below, above), max(below, above), 0.0
+    least = radii[below]
+    share = ((1 / bent / least) ** BY_RADIUS - 1) / ((radii[above] / least) ** BY_RADIUS - 1)
+    return below, above, min(max(share, 0.0), 1.0)
+
+
+@njit(cache=True, borrows=True, error_model="numpy")
+def between_sides(share, one, other, shares, others):
+    """What touches between two sides: W/K, m2 and m of each, of the second by that share. Fills shares (4,), with those
+    of the second: they count by area, and patches stay as long for their breadth."""
+    less = 1 - share
+    area = less * one[1] + share * other[1]
+    for n in range(4):
+        both = less * one[1] * shares[n] + share * other[1] * others[n]
+        shares[n] = both / area if area > 0 else 0.0
+    long = math.sqrt(less * one[2] * one[2] + share * other[2] * other[2])
+    return less * one[0] + share * other[0], area, long
+
+
+def array_next_sides(radii: Array, normal: Array) -> tuple[Array, Array, Array]:
+    """next_sides as a pure function of arrays: NumPy, PyTorch, JAX. radii: (G, A) m, 0 of what is no ellipsoid; normal:
+    (..., G, 3). Returns (..., G) each, no share of what is no ellipsoid."""
+    xp = namespace_of(normal)
+    of_axes, there = radii[:, :3], radii > 0
+    bent = (normal * normal / xp.where(of_axes > 0, of_axes, 1.0 + of_axes)).sum(-1)
+    radius, every = ((1 + _ONE_RADIUS) / bent)[..., None], radii + 0.0 * bent[..., None]
+    larger, smaller = every > radius, (every <= radius) & there
+    below = xp.where(smaller, every, 0.0 * every).argmax(-1)
+    above = xp.where(larger, 1 / xp.where(larger, every, 1.0 + every), 0.0 * every).argmax(-1)
+    inside = larger.any(-1) & smaller.any(-1)
+    below = xp.where(smaller.any(-1), below, above)
+    numbers = as_integers(as_like(np.arange(radii.shape[0]) * radii.shape[1], normal))
+    flat = radii.reshape(-1)
+    least, most = flat[below + numbers], flat[above + numbers]
+    one = 1.0 + 0.0 * bent
+    least, most = xp.where(inside, least, one), xp.where(inside, most, 2 * one)
+    share = ((1 / bent / least) ** BY_RADIUS - 1) / ((most / least) ** BY_RADIUS - 1)
+    return below, xp.where(inside, above, below), xp.where(inside, share.clip(0.0, 1.0), 0.0 * one)
+
+
+def array_between_sides(
+    share: Array, one: Sequence[Array], other: Sequence[Array], shares: Array, others: Array
+) -> tuple[Array, Array, Array, Array]:
+    """between_sides as a pure function of arrays of the share's shape, shares (..., 4); those come last."""
+    xp = namespace_of(share)
+    less = 1 - share
+    first, second = less * one[1], share * other[1]
+    area = first + second
+    over = xp.where(area > 0, area, 1.0 + 0.0 * area)[..., None]
+    square = less * one[2] * one[2] + share * other[2] * other[2]
+    # the root of 0 has no gradient
+    long = xp.where(square > 0, xp.where(square > 0, square, 1.0 + square) ** 0.5, 0.0 * square)
+    both = (first[..., None] * shares + second[..., None] * others) / over
+    return less * one[0] + share * other[0], area, long, both

@@ -8,6 +8,8 @@
 #define DEPTH 0.004  /* m off the pad's plane, up to which a contact is on it, beside half of what the two have sunk in */
 #define RIM 0.0005   /* m beyond the pad's sides */
 #define LOOKING 0.6  /* least cosine between the pad's normal and the contact's */
+#define BY_RADIUS 0.7     /* the power of an ellipsoid's radius, by which contacts between its sides are even */
+#define ONE_RADIUS 1e-6   /* relative difference, up to which two radii are one */
 
 /* A pad in the world: its middle and its axes. */
 typedef struct {
@@ -61,6 +63,56 @@ static int viewed(const double* views, int count, const double normal[3], const 
   return best;
 }
 
+/* The sides of an ellipsoid with the next smaller and the next larger radius, and the share of the second, as
+touch/contacts/views.py. */
+static double next_sides(const double* radii, int count, const double normal[3], int sides[2]) {
+  double bent = 0;
+  for (int k = 0; k < 3; k++) bent += normal[k] * normal[k] / radii[k];
+  double radius = (1 + ONE_RADIUS) / bent;
+  int below = -1, above = -1;
+  for (int k = 0; k < count; k++)
+    if (radii[k] > radius) {
+      if (above < 0 || radii[k] < radii[above]) above = k;
+    } else if (radii[k] > 0 && (below < 0 || radii[k] > radii[below])) {
+      below = k;
+    }
+  sides[0] = below < 0 ? above : below;
+  sides[1] = above < 0 ? below : above;
+  if (below < 0 || above < 0) return 0;
+  double least = radii[below];
+  double share = (pow(1 / bent / least, BY_RADIUS) - 1) / (pow(radii[above] / least, BY_RADIUS) - 1);
+  return lesser(greater(share, 0), 1);
+}
+
+/* The sides of an ellipsoid for a round pad that it touches y and z m from its middle, as touch/contacts/pad_contacts.py.
+facing: its axes. */
+static void on_ellipsoid(const double facing[3][3], const Pose* at, const double* radii, const double* curve, const double* bend,
+                         double y, double z, double sides[SIDES]) {
+  double lean_y = bend[0] * y, lean_z = bend[1] * z, upright = sqrt(greater(1 - lean_y * lean_y - lean_z * lean_z, 0));
+  double square = 0, on_y = 0, on_z = 0, yy = 0, yz = 0, zz = 0;
+  for (int i = 0; i < 3; i++) {
+    double along = dot(facing[i], at->axes[0]), first = dot(facing[i], at->axes[1]), second = dot(facing[i], at->axes[2]);
+    double normal = upright * along + lean_y * first + lean_z * second, turned = (along + normal) / (1 + upright);
+    first -= lean_y * turned;
+    second -= lean_z * turned;
+    double half = radii[0] * radii[1] * radii[2] / radii[i];
+    square += half * normal * normal;
+    on_y += half * normal * first;
+    on_z += half * normal * second;
+    yy += half * first * first;
+    yz += half * first * second;
+    zz += half * second * second;
+  }
+  yy -= on_y * on_y / square;
+  yz -= on_y * on_z / square;
+  zz -= on_z * on_z / square;
+  double high = sqrt(square);
+  sides[0] = sqrt(high * zz / (yy * zz - yz * yz) / curve[0]);
+  sides[1] = -sides[0] * yz / zz;
+  sides[2] = 0;
+  sides[3] = sqrt(high / zz / curve[1]);
+}
+
 /* Adds what presses one pad on one partner to the touch. pushed: force N and its moments. again: whether another geom of the
 target has been counted in this step. before: steps of the sample before it. Returns whether one has now. */
 static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int f, int g, const double pushed[3],
@@ -87,7 +139,14 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
   double seen[2] = {0};
   if (views && !bulging)
     side = viewed(numbers->views + g * numbers->sides * VIEW, views, looking, place, law->half_face, seen);
-  int table = other ? -1 : (int)numbers->curved[(f * numbers->partners + g) * numbers->sides + side];
+  const double *radii = numbers->radii + g * numbers->sides, *tables = numbers->curved + (f * numbers->partners + g) * numbers->sides;
+  int next[2] = {side, side};
+  double part = 0;
+  if (!other && !views && radii[0] > 0) {
+    part = next_sides(radii, numbers->sides, looking, next);
+    side = next[0];
+  }
+  int table = other ? -1 : (int)tables[side], larger = (int)tables[next[1]];
   if (table >= 0 && !bulging) {
     double lying = force, whole = 1;
     if (views) {
@@ -103,6 +162,15 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
     }
     if (whole > 0)
       conducts = whole * heat_curved(numbers->bent + table * CURVED, numbers->grid, lying / whole, first, second, &area, &length, shares);
+    if (part > 0 && larger >= 0) {
+      double others[4] = {0}, wide = 0, longer = 0;
+      double more = heat_curved(numbers->bent + larger * CURVED, numbers->grid, lying, first, second, &wide, &longer, others);
+      double one = (1 - part) * area, two = part * wide;
+      for (int k = 0; k < 4; k++) shares[k] = one + two > 0 ? (one * shares[k] + two * others[k]) / (one + two) : 0;
+      conducts = (1 - part) * conducts + part * more;
+      area = one + two;
+      length = sqrt((1 - part) * length * length + part * longer * longer);
+    }
     area *= whole;
     length *= whole;
   } else if (bulging) {
@@ -112,6 +180,7 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
       for (int k = 1; k < 3; k++)
         if (i != axis) sides[n++] = dot(facing[i], at->axes[k]);
         else sides[3 + k] = flat ? dot(facing[i], at->axes[k]) / dot(facing[i], at->axes[0]) : 0;
+    if (!other && radii[0] > 0) on_ellipsoid(facing, at, radii, curve, bend, first, second, sides);
     sides[6] = other ? place[1] + first : 0;
     sides[7] = other ? place[2] + second : 0;
     on_face = heat_round_contact(bend, curve, sides, force, first, second, &area, &share, &longer, &even);

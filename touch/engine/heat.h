@@ -76,7 +76,7 @@ typedef struct {
   int tips, fingers;             /* fingertips and the elements that are glued on objects behind them; without these */
   int faces;                     /* of a network of either: 2 where elements have one for their object and one for pads */
   int objects, geoms, targets, partners, patterns, tip_states, sample_steps;
-  int tables, sides;             /* of curved contacts; axes or, of meshes, views of a partner, at most */
+  int tables, sides;             /* of curved contacts; axes, radii of an ellipsoid or views of a mesh, of a partner at most */
   int spreads;                   /* tables of narrow contacts */
   int links;                     /* of the longest chain behind an element */
   int named;                     /* geoms in the attribute "geoms"; roles: of each, the fingertip, or F plus its number among G */
@@ -90,6 +90,7 @@ typedef struct {
   const double *bends, *curves;  /* of each pad; of each partner by the axis of its frame */
   const double *laws, *curved;   /* Law of each pad on each partner, by the axis of its frame, and its table's number or -1 */
   const double *views, *viewed;  /* VIEW of each partner by its side, and how many: 0 of what is no mesh */
+  const double* radii;           /* m of each partner by its side, 0 of what is no ellipsoid */
   const double* tilts;           /* TILT each, alike */
   const double *bent, *grid;     /* CURVED each; logarithms of their first force and of the next one's ratio, least W/K */
   const double *decay, *times, *to_moments, *moments, *nodes, *jumps, *along, *gram, *poles, *weights;

@@ -8,7 +8,7 @@
 
 #include "heat.h"
 
-enum { VERSION = 15, HEADER = 17, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32,
+enum { VERSION = 16, HEADER = 17, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32,
        MOST_TABLES = 4096, MOST_VIEWS = 256, MOST_LINKS = 256,
        MOST_SPREADS = (1 + AXES) * MOST_TIPS * (MOST_OBJECTS + MOST_TIPS) };
 
@@ -81,6 +81,7 @@ const char* heat_parse(Numbers* n, const char* text) {
       {&n->curved, (size_t)fingers * partners * n->sides},
       {&n->views, (size_t)partners * n->sides * VIEW},
       {&n->viewed, partners},
+      {&n->radii, (size_t)partners * n->sides},
       {&n->tilts, (size_t)fingers * partners * 3 * TILT},
       {&n->bent, (size_t)n->tables * CURVED},
       {&n->narrow, (size_t)n->spreads * SPREAD * n->rates},

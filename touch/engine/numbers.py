@@ -23,7 +23,7 @@ from ..heat import TipField, Wall, crossing_rate, narrow_tables, resolution, tip
 from ..scene import BodyShape, PadPlace
 from .backs import back_rows
 
-_VERSION = 15
+_VERSION = 16
 
 
 def packed(
@@ -70,6 +70,7 @@ def packed(
         curved,
         views,
         viewed,
+        found.radii,
         tilts,
         tables,
         narrow,
