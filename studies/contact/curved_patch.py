@@ -1,12 +1,15 @@
-"""The drop of a bare sensor on a ball whose contact conducts place by place, beside the even patch that stands for it.
+"""The drop of a bare sensor on a ball or a cylinder whose contact conducts place by place, beside the even patch that
+stands for it.
 
 Finite volumes about an axis: sensor and plate as discs of equal areas, the plate of the ball's thickness and volume as
 in the environments. Where the ball touches, rough faces conduct at Hertz's mean pressure; beside it gas, in Hertz's own
 gap. Heat is constricted by itself: the cells are a sixth of the contact's radius in the middle. The other run is of the
-same grid with one conductance over a disc of `even_patch`'s area, whose product is `conduction`'s.
+same grid with one conductance over a disc of `even_patch`'s area, whose product is `conduction`'s. Of a cylinder that
+lies across the whole face all is the same in a plane, without what flows along it.
 
     python studies/contact/curved_patch.py                  steel, copper, glass, plastic and wood
     python studies/contact/curved_patch.py glass --json
+    python studies/contact/curved_patch.py abs wood cork --cylinders
 """
 
 from __future__ import annotations
@@ -26,10 +29,12 @@ from thermograsp.thermal.contact import bare_footprint, conductance, conduction,
 TIMES = np.array([0.5, 1.0, 2.0, 4.0])
 CASES = ((0.02, 10.0), (0.02, 1.0), (0.005, 10.0), (0.05, 10.0))
 """(radius m, force N)"""
+CYLINDERS = ((0.02, 0.05), (0.02, 1.0), (0.02, 5.0), (0.02, 20.0), (0.02, 60.0))
 DIFFERENCE = 12.0  # K
 _GAMMA = 1 - 1 / np.sqrt(2)
 _STEPS = ((1e-4, 10), (1e-3, 9), (1e-2, 9), (0.05, 18), (0.1, 31))  # s, how many
 _MIDDLE = np.zeros(3)
+_LONG = 0.08  # m of a cylinder
 
 
 def edges(points: Sequence[float], finest: Sequence[float], growth: float, longest: float) -> np.ndarray:
@@ -50,10 +55,16 @@ def edges(points: Sequence[float], finest: Sequence[float], growth: float, longe
 
 class Disc:
     """Layers, the touched one first, on a grid. matrix: W/K between cells; capacity: J/K; face: m2 of the rings;
-    half: m2 K/W from the face to the first cells' middles."""
+    half: m2 K/W from the face to the first cells' middles. length: m of strips to both sides of a middle line, which
+    take the rings' place; None for rings."""
 
     def __init__(
-        self, rings: np.ndarray, layers: Sequence[Layer], finest: Sequence[float], longest: float
+        self,
+        rings: np.ndarray,
+        layers: Sequence[Layer],
+        finest: Sequence[float],
+        longest: float,
+        length: float | None = None,
     ) -> None:
         bounds = np.cumsum([0.0, *(layer.thickness for layer in layers)])
         self.depths = edges(list(bounds), finest, 1.25, longest)
@@ -61,12 +72,13 @@ class Disc:
         self.layer = np.searchsorted(bounds, self.depths[:-1] + self.thick / 2) - 1
         self.conducts = np.array([layers[n].conductivity for n in self.layer])
         holds = np.array([layers[n].volumetric_heat_capacity for n in self.layer])
-        self.face = np.pi * np.diff(rings**2)
+        self.face = np.pi * np.diff(rings**2) if length is None else 2 * length * np.diff(rings)
         self.capacity = np.outer(holds * self.thick, self.face).ravel()
         self.half = self.thick[0] / (2 * self.conducts[0])
         middles = (rings[1:] + rings[:-1]) / 2
         number = np.arange(self.capacity.size).reshape(len(self.thick), -1)
-        sideways = np.outer(self.conducts * self.thick, 2 * np.pi * rings[1:-1] / np.diff(middles))
+        edges_long = 2 * np.pi * rings[1:-1] if length is None else 2 * length
+        sideways = np.outer(self.conducts * self.thick, edges_long / np.diff(middles))
         resistance = self.thick / (2 * self.conducts)
         along = self.face[None] / (resistance[1:] + resistance[:-1])[:, None]
         first = np.concatenate((number[:, :-1].ravel(), number[:-1].ravel()))
@@ -119,28 +131,34 @@ def _drop(tip: Disc, sensed: int, state: np.ndarray) -> float:
     return at(int(layer[-1])) - at(int(layer[0]) - 1)
 
 
-def compared(name: str, radius: float, force: float) -> dict[str, object]:
-    """Of a ball: W/K and drops K at TIMES, place by place and of an even patch, whose area is in m2."""
+def compared(name: str, radius: float, force: float, cylinder: bool = False) -> dict[str, object]:
+    """Of a ball, or of a cylinder across the face: W/K and drops K at TIMES, place by place and of an even patch, whose
+    area is in m2."""
     made, stack = material(name), sensor("seed")
-    surface = Surface.of(made)
-    law = bare_footprint(Pad(), surface, radius)
+    surface, width = Surface.of(made), stack.width
+    law = bare_footprint(Pad(), surface, radius, _LONG if cylinder else None)
     area, load = footprint(law, force, _MIDDLE)
     patch, total = even_patch(law, made, force), conduction(law, force, _MIDDLE)[1]
-    touched, reach = np.sqrt(area / np.pi), stack.width / np.sqrt(np.pi)
+    length = width if cylinder else None
+    touched, covers, reach = area / (2 * width), patch / (2 * width), width / 2
+    volume = np.pi * radius**2 / (2 * radius) / 2
+    if not cylinder:
+        touched, covers, reach = np.sqrt(area / np.pi), np.sqrt(patch / np.pi), width / np.sqrt(np.pi)
+        volume = np.sqrt(4 / 3 * np.pi * radius**3 / (2 * radius) / np.pi)
+    fine = min(touched / 6, 1e-4)
     rings = edges([0.0, touched, reach], [touched / 6, touched / 6, 1e-4], 1.15, 3e-4)
-    wide = max(np.sqrt(4 / 3 * np.pi * radius**3 / (2 * radius) / np.pi), 1.0001 * reach)
-    beyond = edges([reach, wide], [1e-4, 1e-3], 1.2, 2e-3)
+    beyond = edges([reach, max(volume, 1.0001 * reach)], [1e-4, 1e-3], 1.2, 2e-3)
     layers = stack.layers[::-1]
-    tip = Disc(rings, layers, [touched / 6, *[3e-5] * len(layers)], 2e-4)
-    body = Disc(
-        np.unique(np.concatenate((rings, beyond))), [made.layer(2 * radius)], [touched / 6, 1e-3], 1e-3
-    )
+    tip = Disc(rings, layers, [touched / 6, *[3e-5] * len(layers)], 2e-4, length)
+    wide = np.unique(np.concatenate((rings, beyond)))
+    body = Disc(wide, [made.layer(2 * radius)], [fine if cylinder else touched / 6, 1e-3], 1e-3, length)
     at = (rings[1:] + rings[:-1]) / 2
-    x = np.maximum(at / touched, 1.0)
-    gap = touched**2 / np.pi / radius * (np.sqrt(x * x - 1) + (x * x - 2) * np.arccos(1 / x))
+    gap = gap_beside(np.maximum(at / touched, 1.0), cylinder) * touched**2 / radius
     beside = np.where(at < radius, float(law["gas"]) / (float(law["mean_gap"]) + gap), 0.0)
     placed = np.where(at < touched, conductance(law, load / area), beside)
-    covered = np.clip((patch / np.pi - rings[:-1] ** 2) / np.diff(rings**2), 0.0, 1.0)
+    covered = np.clip((covers - rings[:-1]) / np.diff(rings), 0.0, 1.0)
+    if not cylinder:
+        covered = np.clip((covers**2 - rings[:-1] ** 2) / np.diff(rings**2), 0.0, 1.0)
     sensed = len(layers) - 1 - stack.sensed
     return {
         "material": name,
@@ -153,14 +171,27 @@ def compared(name: str, radius: float, force: float) -> dict[str, object]:
     }
 
 
+def gap_beside(x: np.ndarray, cylinder: bool) -> np.ndarray:
+    """Hertz's gap beside a contact, over its half width's square and the radius; x: of places, over its half width, 1
+    or more (Johnson, Contact Mechanics, sections 3.4 and 4.2)."""
+    root = np.sqrt(x * x - 1)
+    if cylinder:
+        return (x * root - np.log(x + root)) / 2
+    return (root + (x * x - 2) * np.arccos(1 / x)) / np.pi
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
-        description="A bare sensor on balls, place by place and by an even patch."
+        description="A bare sensor on balls or cylinders, place by place and by an even patch."
     )
     parser.add_argument("materials", nargs="*", default=["steel", "copper", "glass", "plastic", "wood"])
+    parser.add_argument(
+        "--cylinders", action="store_true", help="cylinders that lie across the face, at more forces"
+    )
     parser.add_argument("--json", action="store_true", help="print one JSON object")
     options = parser.parse_args(arguments)
-    rows = [compared(name, radius, force) for name in options.materials for radius, force in CASES]
+    cases = CYLINDERS if options.cylinders else CASES
+    rows = [compared(name, *case, options.cylinders) for name in options.materials for case in cases]
     if options.json:
         json.dump(rows, sys.stdout, indent=1)
         return 0
