@@ -30,7 +30,7 @@ from .fingertip import touching
 from .law import CYLINDER, round_footprint
 from .patch_place import patch_ends, patch_offset
 from .rough_faces import Surface
-from .spread import beneath, both_contacts
+from .spread import beneath, in_series, patches
 
 FORCES, PLACES = 14, 24
 FIRST_FORCE, FORCE_STEP = math.log(0.02), math.log(2.2)
@@ -66,6 +66,7 @@ def curved_table(
     _fill(
         law,
         beneath(body, face),
+        in_series(body, face),
         np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES)),
         aside,
         along,
@@ -186,18 +187,16 @@ def even_places(first: float, last: float, edges: Iterable[float], count: int = 
 
 
 @njit(cache=True, error_model="numpy")
-def _fill(law, resistance, forces, aside, along, values, shares):
+def _fill(law, resistance, series, forces, aside, along, values, shares):
     place, width = np.zeros(3), 2 * law.half_face
     for i in range(len(aside)):
         for j in range(len(along)):
             place[1], place[2] = aside[i], along[j]
             for k in range(len(forces)):
                 at = values[k, i, j]
-                at[_CONTACT], at[_GAS], at[_PATCH], at[_WIDE] = both_contacts(
-                    law, resistance, forces[k], place
+                at[_CONTACT], at[_GAS], at[_PATCH], at[_WIDE], area = patches(
+                    law, resistance, series, forces[k], place
                 )
-                total = at[_CONTACT] + at[_GAS]
-                area = (at[_CONTACT] * at[_PATCH] + at[_GAS] * at[_WIDE]) / total if total > 0.0 else 0.0
                 at[_LONG], at[_LONGER], long = math.sqrt(at[_PATCH]), math.sqrt(at[_WIDE]), math.sqrt(area)
                 beside = along[j]
                 if law.shape == CYLINDER:

@@ -8,12 +8,14 @@ face, W/K, and g' that of the same gas with 1/b = l (1/k + 1/k') of both bodies 
 
 and evenly g/A loses as much to the bodies' resistance as the gas does: little where b is large, so that the patch is
 wide under wood and narrow under copper. The contact itself is as large as it is, and the patch is the mean of both
-areas, weighted by what they conduct. l is how deep heat has come into the body in a second, but 0.8 mm at most, since
-it spreads sideways by then: a fit to finite volumes of the contact place by place (studies/contact/curved_patch.py),
-balls of 5, 20 and 50 mm of five materials.
+areas, weighted by what they conduct, or what two_flows finds, if that is wider. l is how deep heat has come into the
+body in a second, but 0.8 mm at most, since it spreads sideways by then: a fit to finite volumes of the contact place by
+place (studies/contact/curved_patch.py), balls of 5, 20 and 50 mm of five materials.
 """
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 
@@ -21,18 +23,18 @@ from thermograsp.compiled import njit
 
 from ..matter import Material
 from .footprint import beside, solid_conduction, touched
+from .law import CYLINDER
 from .rough_faces import LAPPED_ALUMINA, Surface
 
 _DEEPEST, _SECONDS = 0.8e-3, 1.0  # m, s, see above
 _MOST_NARROWED, _EVENED = 0.56, 1 / 3  # see narrowing
+_FEW = 1e-6  # of what both conduct: less is no contact
 _MIDDLE = np.zeros(3)
 
 
 def even_patch(law: np.void, body: Material, force: float, face: Surface = LAPPED_ALUMINA) -> float:
     """m2, of a bare_footprint of the body at a force N > 0 on the pad, over the face's middle."""
-    contact, gas, area, wide = both_contacts(law, beneath(body, face), force, _MIDDLE)
-    total = contact + gas
-    return float((contact * area + gas * wide) / total) if total > 0 else area
+    return float(patches(law, beneath(body, face), in_series(body, face), force, _MIDDLE)[4])
 
 
 def narrowing(body: Surface, face: Surface = LAPPED_ALUMINA) -> float:
@@ -51,22 +53,78 @@ def beneath(body: Material, face: Surface) -> float:
     return depth * (1 / face.conductivity + 1 / body.conductivity)
 
 
+def in_series(body: Material, face: Surface = LAPPED_ALUMINA) -> float:
+    """m K/W of both bodies."""
+    return 1 / face.conductivity + 1 / body.conductivity
+
+
+@njit(cache=True, error_model="numpy")
+def patches(law, resistance, series, force, place):
+    """(W/K of the contact, W/K of the gas, m2 of their two patches, m2 of the one that stands for both) at a force
+    N > 0 on the pad. resistance: of beneath; series: of in_series."""
+    contact, gas, area, wide, whole = both_contacts(law, resistance, force, place)
+    total = contact + gas
+    if total <= 0.0:
+        return contact, gas, area, wide, area
+    even = (contact * area + gas * wide) / total
+    if contact < _FEW * total or gas <= 0.0 or law.constriction > 0.0:
+        return contact, gas, area, wide, even
+    along = 0.0
+    if law.shape == CYLINDER:
+        along = max(
+            min(law.half_face, law.length / 2 - place[2]) - max(-law.half_face, -law.length / 2 - place[2]),
+            0.0,
+        )
+    least = two_flows(contact, gas, area, whole, resistance, series, along)
+    if least <= even:
+        return contact, gas, area, wide, even
+    return contact, gas, (least * total - gas * whole) / contact, whole, least
+
+
+@njit(cache=True, error_model="numpy")
+def two_flows(contact, gas, area, whole, resistance, series, along):
+    """m2 of a patch that resists as much as two flows side by side do: one even over `whole` m2, through the gas, and
+    one over the contact's m2. along: m, the contact's length, 0 for a disc. The rest as in patches.
+
+    A flow that may choose between more ways meets no more resistance (Thomson's principle), so that the patch is no
+    narrower than this. Where the contact conducts more than the bodies beneath it, the mean of the areas is: it let a
+    can of plastic take up half as much heat when it was pressed harder (studies/contact/curved_patch.py --cylinders).
+    Heat that is drawn together from the whole meets the lesser of the resistance of straight flow and of spreading from
+    a strip in a channel, or from a disc."""
+    if area <= 0.0 or area >= whole:
+        return whole
+    spread = resistance * (1.0 / area - 1.0 / whole)
+    if along > 0.0:
+        spread = min(spread, -series / (math.pi * along) * math.log(math.sin(math.pi / 2 * area / whole)))
+    else:
+        spread = min(spread, series / 4 * (math.sqrt(math.pi / area) - math.sqrt(math.pi / whole)))
+    both = resistance / whole
+    narrow, wide = 1.0 / contact + both + spread, 1.0 / gas + both
+    more = (narrow * wide - both * both) / (narrow + wide - 2 * both) - 1.0 / (contact + gas) - both
+    if more <= 0.0:
+        return whole
+    straight = 1.0 / (1.0 / whole + more / resistance)
+    if along > 0.0:
+        return min(straight, whole * 2 / math.pi * math.asin(math.exp(-math.pi * along / series * more)))
+    return min(straight, math.pi / (4 / series * more + math.sqrt(math.pi / whole)) ** 2)
+
+
 @njit(cache=True, error_model="numpy")
 def both_contacts(law, resistance, force, place):
-    """(W/K of the contact, W/K of the gas, m2 of their two patches) at a force N > 0 on the pad; see footprint's
-    conduction. The gas is as it would be without force under the contact too, where it is spread as wide as beside it
-    if heat is constricted."""
+    """(W/K of the contact, W/K of the gas, m2 of their two patches, m2 of all the gas) at a force N > 0 on the pad; see
+    footprint's conduction. The gas is as it would be without force under the contact too, where it is spread as wide as
+    beside it if heat is constricted, and is so among all the gas."""
     area, load, square, hertz = touched(law, force, place)
     around = beside(law, law.mean_gap, area, square, hertz, place)
     total, spread = solid_conduction(law, area, load) + around, 0.0
     if law.mean_gap <= 0.0:
-        return total, 0.0, area, area
+        return total, 0.0, area, area, area
     if around > 0.0:
         less = beside(law, law.mean_gap + law.gas * resistance, area, square, hertz, place)
         spread = max(4 * law.half_face * law.half_face - area, 0.0)
         if around > less:
             spread = min(around * less * resistance / (around - less), spread)
-    gas = min(around + law.gas / law.mean_gap * area, total)
+    gas, whole = min(around + law.gas / law.mean_gap * area, total), area + spread
     if law.constriction == 0.0 and gas > 0.0:
         spread *= around / gas
-    return total - gas, gas, area, area + spread
+    return total - gas, gas, area, area + spread, whole
