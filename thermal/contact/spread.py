@@ -67,7 +67,7 @@ def patches(law, resistance, series, force, place):
     if total <= 0.0:
         return contact, gas, area, wide, area
     even = (contact * area + gas * wide) / total
-    if contact < _FEW * total or gas <= 0.0 or law.constriction > 0.0:
+    if contact < _FEW * total or gas <= 0.0 or law.constriction > 0.0 or law.modulus <= 0.0:
         return contact, gas, area, wide, even
     along = 0.0
     if law.shape == CYLINDER:
@@ -78,7 +78,11 @@ def patches(law, resistance, series, force, place):
     least = two_flows(contact, gas, area, whole, resistance, series, along)
     if least <= even:
         return contact, gas, area, wide, even
-    return contact, gas, (least * total - gas * whole) / contact, whole, least
+    # of the same mean, with all the gas at most
+    wide = (least * total - contact * area) / gas
+    if wide > whole:
+        area, wide = (least * total - gas * whole) / contact, whole
+    return contact, gas, area, wide, least
 
 
 @njit(cache=True, error_model="numpy")
@@ -89,6 +93,7 @@ def two_flows(contact, gas, area, whole, resistance, series, along):
     A flow that may choose between more ways meets no more resistance (Thomson's principle), so that the patch is no
     narrower than this. Where the contact conducts more than the bodies beneath it, the mean of the areas is: it let a
     can of plastic take up half as much heat when it was pressed harder (studies/contact/curved_patch.py --cylinders).
+    Under a bare face alone: beneath a skin the bodies' resistance is not told well enough.
     Heat that is drawn together from the whole meets the lesser of the resistance of straight flow and of spreading from
     a strip in a channel, or from a disc."""
     if area <= 0.0 or area >= whole:
