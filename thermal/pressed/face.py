@@ -198,9 +198,8 @@ def _conduct(points, near, count, what, area, load, where, law, resistance, crow
     """Fills a row of `conducted`. near, count: the springs that touch. what: (n,) heights m, cover m2, slopes m; m, by
     which springs sink in; (C,) m2 of the contact at each point; (C,), room. where: what `lie` takes after the moments,
     without a least length. load: N on a rigid face and on one like the pad. crown, shape: of _crown, within the
-    roughness and without it. flat: the share of what the mesh covers of the face
-    that touches. Heat is constricted here from the patch in whose gas it spreads to the contact: not where the two are
-    one, under a flush face."""
+    roughness and without it. flat: the share of what the mesh covers of the face that touches. Heat is constricted here
+    from the patch in whose gas it spreads to the contact: not where the two are one, under a flush face."""
     heights, cover, slopes, depth, touching, beside = what
     face, found, rigid = where[-1], np.zeros(5), law.modulus > 0.0
     least, round, touches = 0.0, 0.0, _contact_moments(points, near, count, touching)
@@ -225,6 +224,10 @@ def _conduct(points, near, count, what, area, load, where, law, resistance, crow
                 load *= held + curved * (1.0 - held)
                 if of_line == 0.0:
                     gaps = _hertz_gaps(heights[: len(touching)], sunk, given, law.roughness)
+            else:
+                lie(touches, *where, 0.0, found)
+                long = max(found[4], area / found[4])
+                round = area / long**2
             free = (most - hertz) / (most - area) if area < hertz else 1.0
         elif crown[0] > 0.0:
             hertz, round = _hertz(crown, load, long, law.modulus)
@@ -248,11 +251,13 @@ def _conduct(points, near, count, what, area, load, where, law, resistance, crow
         gas, less, around = conducts * around.s, conducts * less, mixed(around, conducts, around, 0.0)
     total, wide = solid + gas, area
     freely = gas
+    if gas > 0.0 or (given > 0.0 and law.mean_gap > 0.0):
+        # what would flow under the contact without force is as wide as beside a constricted one, and no less where all
+        # of a body that gives way has come to touch
+        freely, row[5] = min(gas + law.gas / law.mean_gap * area, total), row[4]
     if gas > 0.0:
         rest = max(face * face - area, 0.0)
         wide += min(gas * less * resistance / (gas - less), rest) if gas > less else rest
-        # what would flow under the contact without force is as wide as beside a constricted one
-        freely = min(gas + law.gas / law.mean_gap * area, total)
         if not rigid:
             wide = area + (wide - area) * gas / freely
         elif of_line > 0.0:
