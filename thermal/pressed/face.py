@@ -54,7 +54,7 @@ _LINE, _COMPACT = 0.1, 0.25
 """Breadth over length of a contact up to which it is a line, which constricts no heat here, and from which it does so
 as a disc."""
 _SPOT = 8 / 3  # times Hertz's modulus, the radius and the height of what touches: the force on a spot
-_STEPS, _CLOSE = 40, 1e-3
+_STEPS, _CLOSE = 40, 1e-3  # at most, to a height that is known to that share
 _CURVED = 1e-3  # of the face: what touches less is no flat face
 _FEWEST = 30  # points
 _UPRIGHT = 1e-9  # of a point, by which all paraboloids that fit points in a line are told apart
@@ -126,7 +126,7 @@ def _press(
     frame[1:] = axes
     heights, cover, even = np.zeros(len(points)), np.zeros(len(points)), np.ones(len(points))
     slopes, touching, beside = np.zeros(len(points)), np.zeros(counted), np.zeros(counted)
-    no_crown = 0.0, 0.0, False
+    no_crown = 0.0, 0.0, 0.0
     first = 1 if of_face else 0  # a face touches nothing at the ends
     last = places.shape[1] - first
     for a in range(max(some[0, 0], first), min(some[0, 1], last)):
@@ -231,7 +231,7 @@ def _conduct(points, near, count, what, area, load, where, law, resistance, crow
             free = (most - hertz) / (most - area) if area < hertz else 1.0
         elif crown[0] > 0.0:
             hertz, round = _hertz(crown, load, long, law.modulus)
-            hertz = min(hertz, cover[: len(touching)].sum() if crown[2] else area)
+            hertz = min(hertz, cover[: len(touching)].sum() if _at_edge(crown[2], law) else area)
         if hertz != area:
             touching *= hertz / area
             touches = mixed(touches, hertz / area, touches, 0.0)
@@ -341,14 +341,14 @@ def _given_way(soft, line, load):
     level = min(max(level, low), high)
     for _ in range(_STEPS):
         whole = _touched_at(heights, cover, slopes, level - rough)
-        borne = _SPOT * modulus * math.sqrt(whole / math.pi) * _as_paraboloid(level, curved)
-        if borne < load:
+        bears = _SPOT * modulus * math.sqrt(whole / math.pi) * _as_paraboloid(level, curved)
+        if bears < load:
             low = level
         elif level == low:
             return depth, 0.0
         else:
             high = level
-        further = level * (load / borne) ** (2 / 3)  # exactly so under a paraboloid
+        further = level * (load / bears) ** (2 / 3)  # exactly so under a paraboloid
         if not low < further < high:
             further = (low + high) / 2
         close = abs(further - level) <= _CLOSE * level
@@ -390,18 +390,22 @@ def _touch_at(heights, cover, slopes, depth, touching):
 
 @njit(cache=True, error_model="numpy")
 def _on_rigid(shape, of_line, area, whole, sunk, law):
-    """(m2 of the face, the part of the force on it) under a crown that has given way: as if it were over the face's
-    middle. whole, sunk: as _given_way has them. of_line: m, of a line, 0 of a spot. area: m2 of the face that
-    touches."""
+    """(m2 of the face, the part of the force on it) under a crown that has given way, as if it were over the face's
+    middle if the contact goes beyond the face. whole, sunk: as _given_way has them. of_line: m, of a line, 0 of a spot.
+    area: m2 of the face that touches."""
     half = law.half_face
     if of_line > 0.0:
         wide, held = math.sqrt(2 * (sunk + law.roughness) / shape[0]), 1.0
+        if shape[2] + wide <= half:
+            return min(2 * wide * of_line, area), 1.0
         if wide > half:
             share = half / wide
             wide, held = half, (3 - share * share) * share / 2
-        return max(2 * wide * of_line, area), held
+        return 2 * wide * of_line, held
+    if shape[2] + math.sqrt(whole / math.pi) <= half:
+        return min(whole, area), 1.0
     part, held = disc_on_face(whole / math.pi, half, 0.0, 0.0)
-    return max(whole * part, area), held
+    return whole * part, held
 
 
 @njit(cache=True, error_model="numpy")
@@ -461,8 +465,9 @@ def _no_more(row, above):
 
 @njit(cache=True, error_model="numpy")
 def _crown(points, heights, cover, counted, law):
-    """(1/m, 1/m, whether it is at the face's edge): how curved the mesh is, more and less, around what of it comes to
-    the face first; 0 and 0 where that is no crown: flat, or a shape that no paraboloid is."""
+    """(1/m, 1/m, m): how curved the mesh is, more and less, around what of it comes to the face first; 0 and 0 where
+    that is no crown: flat, or a shape that no paraboloid is. How far that is from the face's middle, along the side
+    where it is further."""
     low, total, y, z = np.inf, 0.0, 0.0, 0.0
     for i in range(counted):
         if cover[i] > 0.0:
@@ -473,8 +478,8 @@ def _crown(points, heights, cover, counted, law):
             y += cover[i] * points[i, 0]
             z += cover[i] * points[i, 1]
     y, z = y / total, z / total
-    edge = max(abs(y), abs(z)) > law.half_face - _AROUND
-    terms = 6 if edge else 4  # beside a crown the surface slopes, too
+    off = max(abs(y), abs(z))
+    terms = 6 if _at_edge(off, law) else 4  # beside a crown the surface slopes, too
     matrix, right, square, count = np.zeros((terms, terms)), np.zeros(terms), 0.0, 0
     row = np.ones(6)
     for i in range(counted):
@@ -489,7 +494,7 @@ def _crown(points, heights, cover, counted, law):
             square += height**2
             count += 1
     if count < _FEWEST:
-        return 0.0, 0.0, edge
+        return 0.0, 0.0, off
     for j in range(terms):
         matrix[j, j] += _UPRIGHT * count  # of points in a line
     found = np.linalg.solve(matrix, right)
@@ -498,8 +503,14 @@ def _crown(points, heights, cover, counted, law):
     mean, half = (found[1] + found[2]) / 2, np.hypot((found[1] - found[2]) / 2, found[3] / 2)
     most, least = 2 * (mean + half) / _AROUND**2, 2 * (mean - half) / _AROUND**2
     if not (most > 1 / _FLATTEST and left < _UNLIKE * spread):
-        return 0.0, 0.0, edge
-    return most, max(least, 0.0), edge
+        return 0.0, 0.0, off
+    return most, max(least, 0.0), off
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _at_edge(off, law):
+    """Whether a crown is at the face's edge, or beyond it."""
+    return off > law.half_face - _AROUND
 
 
 @njit(cache=True, error_model="numpy")
