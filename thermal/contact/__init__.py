@@ -70,6 +70,7 @@ from .rough_faces import (
     stack_joints,
     typical_slope,
 )
+from .round_bodies import disc_on_face
 from .spread import beneath, even_patch, narrowing
 
 __all__ = [
@@ -125,6 +126,7 @@ __all__ = [
     "cylinder_contact",
     "cylinder_footprint",
     "cylinder_law",
+    "disc_on_face",
     "even_patch",
     "even_places",
     "flat_contact",

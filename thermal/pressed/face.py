@@ -8,6 +8,11 @@ patches of even conductance stand for both, as they do under a ball (thermal/con
 Under a crest the rigid face bears nearly all of the force. A flat face meets it flush with the pad, whose springs are
 then taken as the same all over, as they are for boxes (thermal/contact/area.py). In between, the share that touches of
 what the mesh covers of the face tells how flat that is.
+
+A soft mesh gives way further than its roughness. What lies less than h below its highest point touches then, A in all,
+and bears (8/3) E* h sqrt(A/pi), or pi/2 E* h per length of a line: Hertz's laws, in which h is a^2/(2 R) and A is not
+told by the radius. Its gap is Hertz's, too. As under a ball (thermal/contact/footprint.py) a crown's contact stays on
+the face, up to the face's size.
 """
 
 from __future__ import annotations
@@ -26,15 +31,30 @@ from ..contact import (
     Pad,
     conductance,
     constricted,
+    disc_on_face,
 )
 from .height_map import HeightMap, map_heights
 from .lying import Moments, lie, mixed
-from .springs import Ring, borne, loads, lowered, no_springs, on_face, rises, springs, touched_less, under
+from .springs import (
+    LEAST_RISE,
+    Ring,
+    borne,
+    loads,
+    lowered,
+    no_springs,
+    on_face,
+    rises,
+    springs,
+    touched_less,
+    under,
+)
 
 _AROUND = 1e-3  # m, within which a crown's curvature is told
 _LINE, _COMPACT = 0.1, 0.25
 """Breadth over length of a contact up to which it is a line, which constricts no heat here, and from which it does so
 as a disc."""
+_SPOT = 8 / 3  # times Hertz's modulus, the radius and the height of what touches: the force on a spot
+_STEPS, _CLOSE = 40, 1e-3  # at most, to a height that is known to that share
 _CURVED = 1e-3  # of the face: what touches less is no flat face
 _FEWEST = 30  # points
 _UPRIGHT = 1e-9  # of a point, by which all paraboloids that fit points in a line are told apart
@@ -106,6 +126,7 @@ def _press(
     frame[1:] = axes
     heights, cover, even = np.zeros(len(points)), np.zeros(len(points)), np.ones(len(points))
     slopes, touching, beside = np.zeros(len(points)), np.zeros(counted), np.zeros(counted)
+    no_crown = 0.0, 0.0, 0.0
     first = 1 if of_face else 0  # a face touches nothing at the ends
     last = places.shape[1] - first
     for a in range(max(some[0, 0], first), min(some[0, 1], last)):
@@ -118,11 +139,12 @@ def _press(
             if cover[:counted].max() == 0.0:
                 continue
             lowered(heights, cover)
+            shape = _crown(points, heights, cover, counted, law) if rigid and of_face else no_crown
             if rigid:
                 for i in range(len(points)):
                     heights[i] = max(heights[i] - law.roughness, 0.0)
             rises(heights, cover, slopes[:counted])
-            crown = _crown(points, heights, cover, counted, law) if rigid and of_face else (0.0, 0.0, False)
+            crown = _crown(points, heights, cover, counted, law) if rigid and of_face else no_crown
             covered = cover[span[0] : span[1]].sum()
             count = under(heights, cover, stiffness, slopes, near)
             evenly = under(heights, cover, even, slopes, soft) if rigid else 0
@@ -134,14 +156,28 @@ def _press(
                 if flat > _CURVED:
                     soft_depth, _, softly = borne(soft, evenly, cover, loads[n], soft_depth, beside)
                     evenly = touched_less(soft, evenly, soft_depth)
-                    share += flat * (softly - share)
-                if found.shape[3] == 2:
-                    at[n, 0], at[n, 1] = area, share
                 else:
-                    where, load = (areas[0], places[0, a], places[1, b], spans, face), share * forces[n]
-                    what = heights, cover, depth, touching, beside
+                    softly = share
+                if found.shape[3] == 2:
+                    at[n, 0], at[n, 1] = area, share + flat * (softly - share)
+                else:
+                    where = areas[0], places[0, a], places[1, b], spans, face
+                    load = share * forces[n], softly * forces[n]
+                    what = heights, cover, slopes, depth, touching, beside
                     _conduct(
-                        points, near, count, what, area, load, where, law, resistance, crown, flat, at[n]
+                        points,
+                        near,
+                        count,
+                        what,
+                        area,
+                        load,
+                        where,
+                        law,
+                        resistance,
+                        crown,
+                        shape,
+                        flat,
+                        at[n],
                     )
                     if n + 1 < len(loads):
                         _no_more(at[n], at[n + 1])
@@ -158,49 +194,75 @@ def _touches(near, count, cover, depth, span):
 
 
 @njit(cache=True, error_model="numpy")
-def _conduct(points, near, count, what, area, load, where, law, resistance, crown, flat, row):
-    """Fills a row of `conducted`. near, count: the springs that touch. what: (n,) heights m and cover m2; m, by which
-    springs sink in; (C,) m2 of the contact at each point; (C,), room. where: what `lie` takes after the moments,
-    without a least length. load: N on the face. crown: of _crown. flat: the share of what the mesh covers of the face
-    that touches. Heat is constricted here from the patch in whose gas it spreads to the contact: not where the two are
-    one, under a flush face."""
-    heights, cover, depth, touching, beside = what
+def _conduct(points, near, count, what, area, load, where, law, resistance, crown, shape, flat, row):
+    """Fills a row of `conducted`. near, count: the springs that touch. what: (n,) heights m, cover m2, slopes m; m, by
+    which springs sink in; (C,) m2 of the contact at each point; (C,), room. where: what `lie` takes after the moments,
+    without a least length. load: N on a rigid face and on one like the pad. crown, shape: of _crown, within the
+    roughness and without it. flat: the share of what the mesh covers of the face that touches. Heat is constricted here
+    from the patch in whose gas it spreads to the contact: not where the two are one, under a flush face."""
+    heights, cover, slopes, depth, touching, beside = what
     face, found, rigid = where[-1], np.zeros(5), law.modulus > 0.0
     least, round, touches = 0.0, 0.0, _contact_moments(points, near, count, touching)
+    gaps, free, given, of_line = heights, 1.0, 0.0, 0.0
+    curved, stiffly, load = min(flat, 1.0), load[0], load[0] + flat * (load[1] - load[0])
     if area > 0.0:
         lie(touches, *where, 0.0, found)
         row[4] = found[4]
     if rigid and area > 0.0:
         long = max(row[4], area / row[4])
-        if crown[0] > 0.0:
+        round, hertz = min(area / row[4] ** 2, row[4] ** 2 / area), area
+        soft = heights, cover, slopes, max(depth, 0.0), area, long, shape, law
+        sunk, whole, curved, rounder, load = _softly(soft, round, flat, stiffly, load)
+        if sunk > soft[3]:
+            given, round = 1.0 - (soft[3] + law.roughness) / (sunk + law.roughness), rounder
+            area, most = _touch_at(heights, cover, slopes, sunk, touching), cover[: len(touching)].sum()
+            touches, hertz, depth = _all_moments(points, touching), area, sunk
+            if shape[0] > 0.0:
+                of_line = long if round <= _LINE else 0.0
+                hertz, held = _on_rigid(shape, of_line, area, whole, sunk, law)
+                hertz = min(hertz, most)
+                load *= held + curved * (1.0 - held)
+                if of_line == 0.0:
+                    gaps = _hertz_gaps(heights[: len(touching)], sunk, given, law.roughness)
+            else:
+                lie(touches, *where, 0.0, found)
+                long = max(found[4], area / found[4])
+                round = area / long**2
+            free = (most - hertz) / (most - area) if area < hertz else 1.0
+        elif crown[0] > 0.0:
             hertz, round = _hertz(crown, load, long, law.modulus)
-            hertz = min(hertz, cover[: len(touching)].sum() if crown[2] else area)
+            hertz = min(hertz, cover[: len(touching)].sum() if _at_edge(crown[2], law) else area)
+        if hertz != area:
             touching *= hertz / area
             touches = mixed(touches, hertz / area, touches, 0.0)
             area = hertz
-        else:
-            round = min(area / row[4] ** 2, row[4] ** 2 / area)
         least = min(long, face) * (1.0 - _compact(round))
     solid = 0.0
     if area > 0.0:
         solid = conductance(law, load / area) * area
-        solid = constricted(law, area, solid, law.constriction * _compact(round) * (1.0 - min(flat, 1.0)))
+        solid = constricted(law, area, solid, law.constriction * _compact(round) * (1.0 - curved))
         lie(touches, *where, least, found)
         row[4] = found[4]
     gas, less, around = 0.0, 0.0, touches
     if law.mean_gap > 0.0:
         gap = law.mean_gap - depth, law.mean_gap, law.gas * resistance
-        less, around = _beside(points, heights, cover, touching, gap, beside)
-        gas, less, around = law.gas * around.s, law.gas * less, mixed(around, law.gas, around, 0.0)
+        less, around = _beside(points, gaps, cover, touching, gap, beside)
+        conducts = law.gas * free
+        gas, less, around = conducts * around.s, conducts * less, mixed(around, conducts, around, 0.0)
     total, wide = solid + gas, area
     freely = gas
+    if gas > 0.0 or (given > 0.0 and law.mean_gap > 0.0):
+        # what would flow under the contact without force is as wide as beside a constricted one, and no less where all
+        # of a body that gives way has come to touch
+        freely, row[5] = min(gas + law.gas / law.mean_gap * area, total), row[4]
     if gas > 0.0:
         rest = max(face * face - area, 0.0)
         wide += min(gas * less * resistance / (gas - less), rest) if gas > less else rest
-        # what would flow under the contact without force is as wide as beside a constricted one
-        freely = min(gas + law.gas / law.mean_gap * area, total)
         if not rigid:
             wide = area + (wide - area) * gas / freely
+        elif of_line > 0.0:
+            # what gives way without constricting heat spreads as under a skin
+            wide = area + (wide - area) * (1.0 - given * (1.0 - gas / freely))
         lie(mixed(around, wide / gas, around, 0.0), *where, least, found)
         row[5] = found[4]
     if total > 0.0:
@@ -223,6 +285,141 @@ def _contact_moments(points, near, count, touching):
         s, y, z = s + w, y + w * at, z + w * along
         yy, yz, zz = yy + w * at * at, yz + w * at * along, zz + w * along * along
     return Moments(s, y, z, yy, yz, zz)
+
+
+@njit(cache=True, error_model="numpy")
+def _all_moments(points, touching):
+    """Moments of what touches, of all points of the face."""
+    s, y, z, yy, yz, zz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for i in range(len(touching)):
+        w, at, along = touching[i], points[i, 0], points[i, 1]
+        s, y, z = s + w, y + w * at, z + w * along
+        yy, yz, zz = yy + w * at * at, yz + w * at * along, zz + w * along * along
+    return Moments(s, y, z, yy, yz, zz)
+
+
+@njit(cache=True, error_model="numpy")
+def _softly(soft, round, flat, stiffly, load):
+    """(m and m2 of _given_way, how flat what touches counts, its breadth over its length, N on the face) of a body that
+    may give way. soft: of _given_way, but for the force and whether it is a line. round, flat: as roughness and springs
+    have them. stiffly, load: N that a rigid face bears, and one of that flatness."""
+    shape, depth, law, counts = soft[6], soft[3], soft[7], min(flat, 1.0)
+    if shape[0] == 0.0:
+        sunk, whole = _given_way(soft, round <= _LINE, load)
+        return sunk, whole, counts, round, load
+    _, rounder = _hertz(shape, load, soft[5], law.modulus)
+    sunk, whole = _given_way(soft, rounder <= _LINE, stiffly)
+    if sunk > depth and flat > _CURVED:
+        # a crown is the less flat the further it has given way
+        less = (depth + law.roughness) / (sunk + law.roughness)
+        softer = stiffly + less * (load - stiffly)
+        sunk, whole = _given_way(soft, rounder <= _LINE, softer)
+        if sunk > depth:
+            return sunk, whole, counts * less, rounder, softer
+    return sunk, whole, counts, rounder, load
+
+
+@njit(cache=True, error_model="numpy")
+def _given_way(soft, line, load):
+    """(m by which a body is flattened, less its roughness; m2 of the pad that a spot touches then); the depth and 0 m2
+    where springs and roughness are more than that. soft: (n,) heights m, cover m2 and slopes m; the depth m, m2 of the
+    face that touches then, m that this is long; of _crown; the law. line: whether it is one. load: N."""
+    heights, cover, slopes, depth, area, long, shape, law = soft
+    rough, modulus = law.roughness, law.modulus
+    low = depth + rough
+    if line:
+        return max(load / (math.pi / 2 * modulus * long) - rough, depth), 0.0
+    curved, level, whole = math.sqrt(shape[0] * shape[1]), low, 0.0
+    high = 2 * load / (_SPOT * modulus * math.sqrt(area / math.pi))
+    if curved > 0.0:
+        whole = math.pi * (0.75 * load / (curved * modulus)) ** (2 / 3)
+        level = _as_sphere(whole * curved / (2 * math.pi), curved)
+        if whole < math.pi * _AROUND**2:
+            return (level - rough, whole) if level > low else (depth, 0.0)
+    if high <= low:
+        return depth, 0.0
+    level = min(max(level, low), high)
+    for _ in range(_STEPS):
+        whole = _touched_at(heights, cover, slopes, level - rough)
+        bears = _SPOT * modulus * math.sqrt(whole / math.pi) * _as_paraboloid(level, curved)
+        if bears < load:
+            low = level
+        elif level == low:
+            return depth, 0.0
+        else:
+            high = level
+        further = level * (load / bears) ** (2 / 3)  # exactly so under a paraboloid
+        if not low < further < high:
+            further = (low + high) / 2
+        close = abs(further - level) <= _CLOSE * level
+        level = further
+        if close:
+            break
+    return (level - rough, whole) if level - rough > depth else (depth, 0.0)
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _as_paraboloid(height, curved):
+    """m, of a paraboloid of that curvature 1/m, as wide as a sphere is at that height m: Hertz's laws are of one."""
+    return height * max(1.0 - curved * height / 2, 0.5)
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _as_sphere(height, curved):
+    """The reverse, no higher than the sphere's middle."""
+    return (1.0 - math.sqrt(max(1.0 - 2 * curved * height, 0.0))) / curved
+
+
+@njit(cache=True, error_model="numpy")
+def _touched_at(heights, cover, slopes, depth):
+    """m2 of all springs at that depth m."""
+    area = 0.0
+    for i in range(len(heights)):
+        area += cover[i] * min(max((depth - heights[i]) / max(slopes[i], LEAST_RISE) + 0.5, 0.0), 1.0)
+    return area
+
+
+@njit(cache=True, error_model="numpy")
+def _touch_at(heights, cover, slopes, depth, touching):
+    """m2 of the face at that depth m. Fills touching (C,) m2."""
+    for i in range(len(touching)):
+        part = min(max((depth - heights[i]) / max(slopes[i], LEAST_RISE) + 0.5, 0.0), 1.0)
+        touching[i] = cover[i] * part
+    return touching.sum()
+
+
+@njit(cache=True, error_model="numpy")
+def _on_rigid(shape, of_line, area, whole, sunk, law):
+    """(m2 of the face, the part of the force on it) under a crown that has given way, as if it were over the face's
+    middle if the contact goes beyond the face. whole, sunk: as _given_way has them. of_line: m, of a line, 0 of a spot.
+    area: m2 of the face that touches."""
+    half = law.half_face
+    if of_line > 0.0:
+        wide, held = math.sqrt(2 * (sunk + law.roughness) / shape[0]), 1.0
+        if shape[2] + wide <= half:
+            return min(2 * wide * of_line, area), 1.0
+        if wide > half:
+            share = half / wide
+            wide, held = half, (3 - share * share) * share / 2
+        return 2 * wide * of_line, held
+    if shape[2] + math.sqrt(whole / math.pi) <= half:
+        return min(whole, area), 1.0
+    part, held = disc_on_face(whole / math.pi, half, 0.0, 0.0)
+    return whole * part, held
+
+
+@njit(cache=True, error_model="numpy")
+def _hertz_gaps(heights, sunk, given, rough):
+    """(C,) m: heights by which the gap beside a flattened crown is Hertz's. given: how much of it is due to the body,
+    not to roughness and springs; where nothing is, the gap is the shape's own."""
+    gaps, level = heights.copy(), sunk + rough
+    for i in range(len(gaps)):
+        square = (heights[i] - sunk) / level
+        if square > 0.0:
+            x = math.sqrt(square)
+            hertz = 2 / math.pi * (x + (square - 1.0) * math.atan(x))
+            gaps[i] -= given * level * (square - hertz)
+    return gaps
 
 
 @njit(cache=True, error_model="numpy")
@@ -268,8 +465,9 @@ def _no_more(row, above):
 
 @njit(cache=True, error_model="numpy")
 def _crown(points, heights, cover, counted, law):
-    """(1/m, 1/m, whether it is at the face's edge): how curved the mesh is, more and less, around what of it comes to
-    the face first; 0 and 0 where that is no crown: flat, or a shape that no paraboloid is."""
+    """(1/m, 1/m, m): how curved the mesh is, more and less, around what of it comes to the face first; 0 and 0 where
+    that is no crown: flat, or a shape that no paraboloid is. How far that is from the face's middle, along the side
+    where it is further."""
     low, total, y, z = np.inf, 0.0, 0.0, 0.0
     for i in range(counted):
         if cover[i] > 0.0:
@@ -280,8 +478,8 @@ def _crown(points, heights, cover, counted, law):
             y += cover[i] * points[i, 0]
             z += cover[i] * points[i, 1]
     y, z = y / total, z / total
-    edge = max(abs(y), abs(z)) > law.half_face - _AROUND
-    terms = 6 if edge else 4  # beside a crown the surface slopes, too
+    off = max(abs(y), abs(z))
+    terms = 6 if _at_edge(off, law) else 4  # beside a crown the surface slopes, too
     matrix, right, square, count = np.zeros((terms, terms)), np.zeros(terms), 0.0, 0
     row = np.ones(6)
     for i in range(counted):
@@ -296,7 +494,7 @@ def _crown(points, heights, cover, counted, law):
             square += height**2
             count += 1
     if count < _FEWEST:
-        return 0.0, 0.0, edge
+        return 0.0, 0.0, off
     for j in range(terms):
         matrix[j, j] += _UPRIGHT * count  # of points in a line
     found = np.linalg.solve(matrix, right)
@@ -305,8 +503,14 @@ def _crown(points, heights, cover, counted, law):
     mean, half = (found[1] + found[2]) / 2, np.hypot((found[1] - found[2]) / 2, found[3] / 2)
     most, least = 2 * (mean + half) / _AROUND**2, 2 * (mean - half) / _AROUND**2
     if not (most > 1 / _FLATTEST and left < _UNLIKE * spread):
-        return 0.0, 0.0, edge
-    return most, max(least, 0.0), edge
+        return 0.0, 0.0, off
+    return most, max(least, 0.0), off
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _at_edge(off, law):
+    """Whether a crown is at the face's edge, or beyond it."""
+    return off > law.half_face - _AROUND
 
 
 @njit(cache=True, error_model="numpy")

@@ -20,7 +20,7 @@ from ..matter import Material, Skin
 _POINTS = 40  # along the pad's side
 _FINER = 4  # times as many on the face
 _LANES = 64
-_LEAST_RISE = 1e-15  # m, of a flat surface over a point
+LEAST_RISE = 1e-15  # m, of a flat surface over a point
 _STEPS = 50
 _TOLERANCE = 1e-12  # of the force
 
@@ -143,7 +143,7 @@ def under(heights, cover, stiffness, slopes, near):
     for i in range(len(heights)):
         if cover[i] > 0.0:
             near.number[count], near.height[count] = i, heights[i]
-            near.spring[count], near.slope[count] = cover[i] * stiffness[i], max(slopes[i], _LEAST_RISE)
+            near.spring[count], near.slope[count] = cover[i] * stiffness[i], max(slopes[i], LEAST_RISE)
             count += 1
     return count
 
