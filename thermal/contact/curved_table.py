@@ -65,6 +65,7 @@ def curved_table(
     values, shares = table_values(table)
     _fill(
         law,
+        pad.sensor_width,
         beneath(body, face),
         np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES)),
         aside,
@@ -186,8 +187,10 @@ def even_places(first: float, last: float, edges: Iterable[float], count: int = 
 
 
 @njit(cache=True, error_model="numpy")
-def _fill(law, resistance, forces, aside, along, values, shares):
-    place, width = np.zeros(3), 2 * law.half_face
+def _fill(law, width, resistance, forces, aside, along, values, shares):
+    """Fills values and shares, as table_values tells them. width: m of the sensor's face. resistance: m2 K/W of both
+    bodies."""
+    place = np.zeros(3)
     for i in range(len(aside)):
         for j in range(len(along)):
             place[1], place[2] = aside[i], along[j]

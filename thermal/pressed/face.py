@@ -88,6 +88,7 @@ def _arguments(pad: Pad, ring: Ring | None, law: np.void, where: Seen) -> tuple[
         where.some,
         where.spans,
         pad.face,
+        pad.sensor_width,
         ring is None,
         *of_pad,
         law,
@@ -96,8 +97,8 @@ def _arguments(pad: Pad, ring: Ring | None, law: np.void, where: Seen) -> tuple[
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def _press(
-    axes, corner, height, shares, pitch, begin, places, some, spans, face, of_face, points, areas, stiffness, counted,
-    span, loads, forces, near, soft, law, resistance, found,
+    axes, corner, height, shares, pitch, begin, places, some, spans, face, sensor, of_face, points, areas, stiffness,
+    counted, span, loads, forces, near, soft, law, resistance, found,
 ):  # fmt: skip
     """Fills found, of `pressed` or `conducted`. of_face: whether the face is looked at, or a ring. span: from which of
     the points up to which are on the face. loads: m3, forces N over the stiffness of springs around the face.
@@ -138,7 +139,10 @@ def _press(
                 if found.shape[3] == 2:
                     at[n, 0], at[n, 1] = area, share
                 else:
-                    where, load = (areas[0], places[0, a], places[1, b], spans, face), share * forces[n]
+                    where, load = (
+                        (areas[0], places[0, a], places[1, b], spans, face, sensor),
+                        share * forces[n],
+                    )
                     what = heights, cover, depth, touching, beside
                     _conduct(
                         points, near, count, what, area, load, where, law, resistance, crown, flat, at[n]
@@ -165,7 +169,7 @@ def _conduct(points, near, count, what, area, load, where, law, resistance, crow
     that touches. Heat is constricted here from the patch in whose gas it spreads to the contact: not where the two are
     one, under a flush face."""
     heights, cover, depth, touching, beside = what
-    face, found, rigid = where[-1], np.zeros(5), law.modulus > 0.0
+    face, found, rigid = where[-2], np.zeros(5), law.modulus > 0.0
     least, round, touches = 0.0, 0.0, _contact_moments(points, near, count, touching)
     if area > 0.0:
         lie(touches, *where, 0.0, found)

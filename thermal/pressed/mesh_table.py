@@ -89,7 +89,7 @@ def _table(of: PressedMesh) -> np.ndarray:
         touched = view.touched(of.ring, bare=of.body if of.skin is None else None)
         return conducting(view.pad, touching_joint(of.skin, of.body, of.ring), view.places, touched)
     found = view.conducted(of.skin, of.body)
-    end(found[..., :4], found[..., 4:6])
+    end(found[..., :4], found[..., 4:6], bordering=of.pad.sensor is None)
     return filled(view.places, np.concatenate((found[..., 6:], found[..., 4:6]), axis=-1), found[..., :4])
 
 
