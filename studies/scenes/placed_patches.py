@@ -92,6 +92,8 @@ CASES = {
     "rod on a wall of 0.6 mm": Case((-0.0008, 0.0008), _H, 5e5, 0.0, thick=0.0006),
     "rod on a wall of 0.2 mm": Case((-0.0008, 0.0008), _H, 5e5, 0.0, thick=0.0002),
     "ball on a wall of 1.5 mm": Case((-0.0014, 0.0014), 0.0014, 5e5, 0.0, thick=0.0015),
+    "narrow pad": Case((-0.003, 0.003), 0.003, 2.5e5, 0.0),
+    "half of a narrow pad": Case((-0.003, 0.0), 0.003, 2.5e5, -SIDE / 2),
     "ball on a wall of 0.6 mm": Case((-0.0014, 0.0014), 0.0014, 5e5, 0.0, thick=0.0006),
 }
 

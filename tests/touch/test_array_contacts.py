@@ -5,6 +5,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import mujoco
 import numpy as np
 import pytest
@@ -48,9 +50,10 @@ FLAT = {
     side: Fingertip(f"{side}_pad", position=(at, 0, 0), normal=(at, 0, 0), size=(0.016, 0.016))
     for side, at in (("left", 0.004), ("right", -0.004))
 }
-BOX = 'type="box" size=".004 .008 .008"'
+BOX, SMALL = 'type="box" size=".004 .008 .008"', 'type="box" size=".004 .003 .003"'
 TIPS: dict[str, tuple[str, str, dict[str, str | Fingertip]]] = {
     "flat": (BOX, BOX, {**FLAT}),
+    "narrow": (SMALL, SMALL, {side: replace(pad, size=(0.006, 0.006)) for side, pad in FLAT.items()}),
     "round": (
         'type="sphere" size=".008"',
         'type="capsule" size=".008 .01" euler="0 5 0"',

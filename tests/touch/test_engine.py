@@ -161,24 +161,26 @@ def test_elements_on_an_object_are_those_of_thermal_touch(skin: str | None) -> N
 
 
 @NEEDS_SPECS
-def test_fingertips_on_one_another_and_other_shapes() -> None:
-    """Two pads that meet, a ball, a turned box, pyramidal cones."""
-    spec = mujoco.MjSpec.from_string("""
+@pytest.mark.parametrize("half", [0.01, 0.003])
+def test_fingertips_on_one_another_and_other_shapes(half: float) -> None:
+    """Two pads that meet, a ball, a turned box, pyramidal cones; pads wider than the sensor and narrower ones."""
+    spec = mujoco.MjSpec.from_string(f"""
     <mujoco><option timestep=".002" cone="pyramidal"/><worldbody>
-      <body name="low"><geom name="low" type="box" size=".01 .01 .004"/></body>
+      <body name="low"><geom name="low" type="box" size="{half} {half} .004"/></body>
       <body name="high" pos=".002 0 .03"><joint name="high" type="slide" axis="0 0 -1" damping="20"/>
-        <geom name="high" type="box" size=".01 .01 .004" mass=".1"/></body>
+        <geom name="high" type="box" size="{half} {half} .004" mass=".1"/></body>
       <body name="ball" pos=".2 0 0"><geom type="sphere" size=".03"/></body>
       <body name="on_ball" pos=".203 0 .05"><joint name="on_ball" type="slide" axis="0 0 -1" damping="20"/>
-        <geom name="on_ball" type="box" size=".01 .01 .004" mass=".1"/></body>
+        <geom name="on_ball" type="box" size="{half} {half} .004" mass=".1"/></body>
       <body name="box" pos="-.2 0 0" euler="0 0 20"><geom type="box" size=".02 .03 .02"/></body>
       <body name="on_box" pos="-.19 0 .04"><joint name="on_box" type="slide" axis="0 0 -1" damping="20"/>
-        <geom name="on_box" type="box" size=".01 .01 .004" mass=".1"/></body>
+        <geom name="on_box" type="box" size="{half} {half} .004" mass=".1"/></body>
     </worldbody><actuator><motor joint="high"/><motor joint="on_ball"/><motor joint="on_box"/></actuator></mujoco>""")
-    down, up = {"normal": (0, 0, -1), "position": (0, 0, -0.004), "size": (0.02, 0.02)}, (0, 0, 1)
+    size = (2 * half, 2 * half)
+    down, up = {"normal": (0, 0, -1), "position": (0, 0, -0.004), "size": size}, (0, 0, 1)
     words = {
         "fingertips": {
-            "low": Fingertip("low", (0, 0, 0.004), up, (0.02, 0.02), temperature=30.0),
+            "low": Fingertip("low", (0, 0, 0.004), up, size, temperature=30.0),
             **{name: Fingertip(name, **down) for name in ("high", "on_ball", "on_box")},
         },
         "objects": {"ball": "glass", "box": "aluminium"},
@@ -234,10 +236,10 @@ def test_a_pad_that_sinks_in_deep_is_on_its_face_here_too() -> None:
 EDGE = """
 <mujoco><option timestep=".002" gravity="0 0 0"/><asset><mesh name="block" vertex="-.02 -.02 -.02  .02 -.02 -.02
   -.02 .02 -.02  .02 .02 -.02  -.02 -.02 .02  .02 -.02 .02  -.02 .02 .02  .02 .02 .02"/></asset><worldbody>
-  <body name="block"><geom {} friction=".1" mass="1"/></body>
-  <body name="tip" pos="0 0 .0241"><joint name="over" type="slide" axis="{}" damping="5"/>
+  <body name="block"><geom {geom} friction=".1" mass="1"/></body>
+  <body name="tip" pos="0 0 .0241"><joint name="over" type="slide" axis="{way}" damping="5"/>
     <joint name="down" type="slide" axis="0 0 -1" damping="20"/>
-    <geom name="tip" type="box" size=".01 .01 .004" mass=".1"/>
+    <geom name="tip" type="box" size="{half} {half} .004" mass=".1"/>
   </body></worldbody>
   <actuator><position joint="over" kp="2000" kv="60"/><motor joint="down"/></actuator></mujoco>"""
 
@@ -247,27 +249,29 @@ WAYS, SKINS = ("1 0 0", "0 -1 0", "0.8 0.6 0"), (None, "filled_silicone")
 
 @NEEDS_SPECS
 @pytest.mark.parametrize(
-    ("geom", "way", "skin"),
+    ("geom", "way", "skin", "half"),
     [
-        *(('type="box" size=".02 .02 .02"', way, skin) for way in WAYS for skin in SKINS),
+        *(('type="box" size=".02 .02 .02"', way, skin, 0.01) for way in WAYS for skin in SKINS),
+        *(('type="box" size=".02 .02 .02"', WAYS[2], skin, 0.003) for skin in SKINS),
+        pytest.param('type="mesh" mesh="block"', WAYS[2], None, 0.003, marks=pytest.mark.slow),
         *(
-            pytest.param('type="mesh" mesh="block"', way, skin, marks=pytest.mark.slow)
+            pytest.param('type="mesh" mesh="block"', way, skin, 0.01, marks=pytest.mark.slow)
             for way in WAYS
             for skin in SKINS
         ),
     ],
 )
 def test_over_an_edge_its_voltages_are_those_of_thermal_touch(
-    geom: str, way: str, skin: str | None, monkeypatch: pytest.MonkeyPatch
+    geom: str, way: str, skin: str | None, half: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     keep_boxes(monkeypatch)
-    tip = Fingertip("tip", (0, 0, -0.004), (0, 0, -1), (0.02, 0.02), skin=skin)
+    tip = Fingertip("tip", (0, 0, -0.004), (0, 0, -1), (2 * half, 2 * half), skin=skin)
     words: dict = {"fingertips": {"tip": tip}, "objects": {"block": "steel"}}
-    model = install(mujoco.MjSpec.from_string(EDGE.format(geom, way)), **words)
+    model = install(mujoco.MjSpec.from_string(EDGE.format(geom=geom, way=way, half=half)), **words)
     data, touch = mujoco.MjData(model), ThermalTouch(model, **words, chain="ideal")
     data.ctrl[1], most, narrow = 10.0, 0.0, 0
     for n in range(300):
-        data.ctrl[0] = 0.016 + 0.012 * np.sin(n / 40)
+        data.ctrl[0] = 0.006 + half + 0.012 * np.sin(n / 40)
         mujoco.mj_step(model, data)
         touch.update(data)
         if n % 10 == 9:

@@ -159,6 +159,8 @@ PATCHES = {
     "a rod at the edge": ((0.0029, FACE / 2), FACE, 5e5, 0.0),
     "a rod that ends": ((-FACE / 2, 0.0), 0.0016, 5e5, -0.02),
     "a ball at the edge": ((0.0017, FACE / 2), 0.0028, 5e5, 0.0),
+    "a narrow pad": ((-0.003, 0.003), 0.006, 2.5e5, 0.0),
+    "half of a narrow pad": ((-0.003, 0.0), 0.006, 2.5e5, -0.02),
 }
 """m along y from the face's middle, m along z, W/(m2 K), and the y of the middle of a block of 40 mm."""
 
@@ -175,6 +177,8 @@ PATCHES = {
         ("a rod at the edge", "glass", (0.549, 1.092)),
         ("a rod that ends", "steel", (0.910, 2.316)),
         ("a ball at the edge", "aluminium", (0.993, 2.406)),
+        ("a narrow pad", "aluminium", (3.981, 7.604)),
+        ("half of a narrow pad", "aluminium", (2.151, 4.775)),
     ],
 )
 def test_a_contact_at_an_edge_is_that_of_volumes(
@@ -255,6 +259,49 @@ def test_nothing_jumps_where_a_face_slides_over_an_edge(shape: str, skin: str | 
         assert flow[0] > 2 and flow[-1] < 0.05 * flow[0]  # .02 mm are left
         assert (np.diff(flow) <= 1e-9 + 1e-3 * flow[0]).all()
         assert np.abs(np.diff(flow)).max() < 0.015 * flow[0]
+
+
+_CORNERS = " ".join(f"{x} {y} {z}" for x in (-0.02, 0.02) for y in (-0.02, 0.02) for z in (-0.02, 0.02))
+SIZES = ((0.004, 0.004), (0.006, 0.006), (0.004, 0.02), (0.006, 0.044), (0.009, 0.009), (0.02, 0.02))
+"""m along a pad's y and z."""
+
+
+def _placed(geom: str, size: tuple[float, float], aside: list[float]) -> np.ndarray:
+    """(n, 5) shares of a pad that presses so many m aside of a block's middle, and its length over the face's."""
+    model = mujoco.MjModel.from_xml_string(f"""
+    <mujoco><asset><mesh name="m" vertex="{_CORNERS}"/></asset><worldbody><body name="block"><geom {geom}/></body>
+      <body name="tip" pos="0 0 .0239"><joint type="slide" axis="0 1 0"/>
+        <geom name="tip" type="box" size="{size[1] / 2} {size[0] / 2} .004" mass=".1"/></body>
+    </worldbody></mujoco>""")
+    tip = Fingertip("tip", (0, 0, -0.004), (0, 0, -1), size)
+    touch = ThermalTouch(model, fingertips={"tip": tip}, objects={"block": "aluminium"})
+    data, found, face = mujoco.MjData(model), [], touch._pads[0].silicone.face
+    np.testing.assert_allclose(abs(touch._pads[0].axes[1]), [0.0, 1.0, 0.0], atol=1e-12)
+    for at in aside:
+        data.qpos[0] = at
+        mujoco.mj_forward(model, data)
+        touch._reader.clear()
+        touch._reader.read(data)
+        row = touch._reader.touches[0, 0, 0]
+        assert row[AREA] > 0
+        found.append([*row[ASIDE:BESIDE] / row[AREA], row[LENGTH] / row[AREA] / face])
+    return np.array(found)
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_a_narrow_pad_lies_alike_on_a_box_and_on_its_mesh(size: tuple[float, float]) -> None:
+    """In the middle of the sensor's face as long as the block is under all of it, and on without a jump."""
+    half = math.sqrt(min(size[0], FACE) * min(size[1], FACE)) / 2
+    aside = [0.0, 0.01, 0.02 - half - 1e-5, 0.02 - half + 1e-5, 0.02 - half / 2, 0.02]
+    box, mesh = (
+        _placed(geom, size, aside) for geom in ('type="box" size=".02 .02 .02"', 'type="mesh" mesh="m"')
+    )
+    np.testing.assert_allclose(box[4:], mesh[4:], atol=0.05)
+    if half < FACE / 2 * (1 - 1e-9):
+        np.testing.assert_allclose(box[:4], mesh[:4], atol=0.05)
+        np.testing.assert_allclose(box[:2, :4], 0.0, atol=1e-9)
+        assert np.abs(box[3] - box[2]).max() < 0.02
+        assert (box[-1, :2] < 0.5).all()  # half of it lies on one side of the sensor's middle, not at its end
 
 
 def test_steps_of_any_length_tell_the_same(touch: ThermalTouch) -> None:

@@ -55,6 +55,33 @@ def test_a_pad_on_a_round_geom_has_no_edge_for_a_rod_to_lie_on() -> None:
     assert not pair_laws(model, pads(model, {"tip": given}, shapes), shapes).tilts.any()
 
 
+def test_a_pad_on_a_cylinder_s_end_has_an_edge_and_on_its_side_none() -> None:
+    """On its end a rod that leans is felt as on a square pad of the same area."""
+    fingers: tuple[tuple[str, str, dict[str, str | Fingertip]], ...] = (
+        ("square", 'type="box" size=".0053174 .0053174 .004"', {"tip": "tip"}),
+        ("end", 'type="cylinder" size=".006 .004"', {"tip": "tip"}),
+        (
+            "side",
+            'type="cylinder" size=".006 .02" euler="90 0 0"',
+            {"tip": Fingertip("tip", (0.0, 0.0, -0.006), (0.0, 0.0, -1.0), (0.02, 0.02))},
+        ),
+    )
+    rows, drops = {}, {}
+    for name, geom, tips in fingers:
+        text = scene(6.0, 0.04).replace('type="box" size=".01 .01 .004"', geom)
+        model = mujoco.MjModel.from_xml_string(text)
+        touch = ThermalTouch(model, fingertips=tips, objects={"rod": "aluminium"}, chain=IDEAL)
+        rows[name] = pair_laws(model, touch._pads, touch._shapes).tilts
+        data = mujoco.MjData(model)
+        data.ctrl[0] = 8.0
+        for _ in range(200):
+            mujoco.mj_step(model, data)
+            touch.update(data)
+        drops[name] = float(touch.reading.temperature_drop[0])
+    assert rows["square"].any() and rows["end"].any() and not rows["side"].any()
+    assert drops["end"] == pytest.approx(drops["square"], rel=0.15)
+
+
 def sunk(springs: np.ndarray, height: np.ndarray, area: float, force: float) -> float:
     """Depth m at which the springs Pa/m of cells take the force N, by halving an interval."""
     low, high = 0.0, 0.02

@@ -32,6 +32,8 @@ class Pad:
     holds). youngs_modulus: Pa; 1.14 MPa is a Shore A hardness of 30 by Gent's relation (1958, Rubber Chem. Technol.
     31:896). compression_factor: of Gent & Lindley, 0.93 at that hardness (Lindley 1974, Engineering design with
     natural rubber). face_stiffness: Pa/m of the springs on the sensor's face, None for those of the pad around it.
+    sensor: m, the side of the sensor's whole face where a narrow pad bears only a part in its middle; None for all of
+    it.
     """
 
     width: float = 0.020
@@ -40,6 +42,7 @@ class Pad:
     youngs_modulus: float = 1.14e6
     compression_factor: float = 0.93
     face_stiffness: float | None = None
+    sensor: float | None = None
 
     def __post_init__(self) -> None:
         for name in ("width", "face", "thickness", "youngs_modulus", "compression_factor"):
@@ -48,6 +51,15 @@ class Pad:
             positive("pad: face_stiffness (Pa/m)", self.face_stiffness)
         if self.face > self.width:
             raise InvalidValueError(f"pad: face {self.face:g} m is wider than the pad, {self.width:g} m")
+        if self.sensor is not None and not self.sensor >= self.face:
+            raise InvalidValueError(
+                f"pad: sensor {self.sensor:g} m is narrower than what touches of it, {self.face:g} m"
+            )
+
+    @property
+    def sensor_width(self) -> float:
+        """m, the side of the sensor's face, all over which heat spreads on from what the pad bears of it."""
+        return self.face if self.sensor is None else self.sensor
 
     @property
     def foundation_modulus(self) -> float:

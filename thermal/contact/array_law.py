@@ -81,18 +81,18 @@ def array_contact(laws: ArrayLaws, force: Array, place: Array) -> tuple[Array, A
     return area * touching, carried * touching
 
 
-def array_flat_patch(laws: ArrayLaws, area: Array, place: Array) -> tuple[Array, Array]:
-    """flat_patch: m, and shares (..., 4), as a pure function of arrays. area: m2, of the laws' shape; place: (..., 3)
-    m."""
+def array_flat_patch(laws: ArrayLaws, area: Array, place: Array, width: Array) -> tuple[Array, Array]:
+    """flat_patch on objects: m, and shares (..., 4), as a pure function of arrays. area: m2, of the laws' shape; place:
+    (..., 3) m; width: m of the sensors' faces."""
     xp = namespace_of(area)
     half = laws.half_face[..., None]
     pad, size = (laws.select * place[..., None, :]).sum(-1), laws.size
     low, high = xp.maximum(-half, -pad - size / 2), xp.minimum(half, size / 2 - pad)
     length, middle = high - low, (low + high) / 2
-    width = 2 * laws.half_face
     covers = (laws.follows > 0) & (area < width * width * NARROW)
-    offset = array_patch_offset(middle, length, 2 * half + 0.0 * length)
-    ends = array_patch_ends(pad + middle, pad, length, size, 2 * half + 0.0 * length)
+    face = width[..., None] + 0.0 * length
+    offset = array_patch_offset(middle, length, face)
+    ends = array_patch_ends(pad + middle, pad, length, size, face)
     shares = xp.where(covers[..., None], xp.concatenate((offset, ends), -1), 0.0 * area[..., None])
     return xp.where(covers, length[..., 1], area**0.5), shares
 

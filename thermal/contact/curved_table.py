@@ -65,6 +65,7 @@ def curved_table(
     values, shares = table_values(table)
     _fill(
         law,
+        pad.sensor_width,
         beneath(body, face),
         in_series(body, face),
         np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES)),
@@ -187,8 +188,10 @@ def even_places(first: float, last: float, edges: Iterable[float], count: int = 
 
 
 @njit(cache=True, error_model="numpy")
-def _fill(law, resistance, series, forces, aside, along, values, shares):
-    place, width = np.zeros(3), 2 * law.half_face
+def _fill(law, width, resistance, series, forces, aside, along, values, shares):
+    """Fills values and shares, as table_values tells them. width: m of the sensor's face. resistance, series: m2 K/W
+    and m K/W of both bodies, as patches takes them."""
+    place = np.zeros(3)
     for i in range(len(aside)):
         for j in range(len(along)):
             place[1], place[2] = aside[i], along[j]

@@ -4,7 +4,8 @@ Under a strip as broad as p on a wide body heat goes to both sides; where the bo
 the strip behind that end stands for the end: its temperature falls with the logarithm of the distance 2 m of the
 strip's middle from its image (Carslaw & Jaeger, section 10.10), from that of a strip at the end, m = p/2, to that of
 one in the middle of the face of a sensor. Shares are 0 there and 1 at the end, along one axis each; 1 too of what is as
-long as the face."""
+long as the face. That is the sensor's whole face, however little of it a narrow pad bears: what such a pad touches lies
+in the middle of it, with room on both sides."""
 
 from __future__ import annotations
 

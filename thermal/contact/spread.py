@@ -78,11 +78,18 @@ def patches(law, resistance, series, force, place):
     least = two_flows(contact, gas, area, whole, resistance, series, along)
     if least <= even:
         return contact, gas, area, wide, even
-    # of the same mean, with all the gas at most
-    wide = (least * total - contact * area) / gas
-    if wide > whole:
-        area, wide = (least * total - gas * whole) / contact, whole
+    area, wide = widened(contact, gas, area, whole, least)
     return contact, gas, area, wide, least
+
+
+@njit(cache=True, error_model="numpy")
+def widened(contact, gas, area, whole, patch):
+    """m2 of the contact's and of the gas's patch, `whole` at most, whose mean by what they conduct is `patch`. area: m2,
+    of the contact at least."""
+    wide = (patch * (contact + gas) - contact * area) / gas
+    if wide > whole:
+        return (patch * (contact + gas) - gas * whole) / contact, whole
+    return area, wide
 
 
 @njit(cache=True, error_model="numpy")

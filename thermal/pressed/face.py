@@ -32,6 +32,8 @@ from ..contact import (
     conductance,
     constricted,
     disc_on_face,
+    two_flows,
+    widened,
 )
 from .height_map import HeightMap, map_heights
 from .lying import Moments, lie, mixed
@@ -53,6 +55,7 @@ _AROUND = 1e-3  # m, within which a crown's curvature is told
 _LINE, _COMPACT = 0.1, 0.25
 """Breadth over length of a contact up to which it is a line, which constricts no heat here, and from which it does so
 as a disc."""
+_FEW = 1e-6  # of what both conduct: less is no contact
 _SPOT = 8 / 3  # times Hertz's modulus, the radius and the height of what touches: the force on a spot
 _STEPS, _CLOSE = 40, 1e-3  # at most, to a height that is known to that share
 _CURVED = 1e-3  # of the face: what touches less is no flat face
@@ -86,13 +89,13 @@ def pressed(pad: Pad, ring: Ring | None, law: np.void, where: Seen) -> np.ndarra
     return touched
 
 
-def conducted(pad: Pad, law: np.void, resistance: float, where: Seen) -> np.ndarray:
+def conducted(pad: Pad, law: np.void, resistance: float, series: float, where: Seen) -> np.ndarray:
     """(FORCES, rows, columns, 10) of the sensor's face: the shares by which what conducts lies at an end of the face
     along both axes, and of the mesh (thermal/contact/patch_place.py); m, how long the patches of the contact and of the
-    gas are along the second axis; W/K of both; m2 of the patches. pad, law: as pressed has them. resistance: m2 K/W of
-    both bodies."""
+    gas are along the second axis; W/K of both; m2 of the patches. pad, law: as pressed has them. resistance,
+    series: m2 K/W and m K/W of both bodies (thermal/contact/spread.py)."""
     found = where.room(10)
-    _press(*_arguments(pad, None, law, where), resistance, found)
+    _press(*_arguments(pad, None, law, where), (resistance, series), found)
     return found
 
 
@@ -108,6 +111,7 @@ def _arguments(pad: Pad, ring: Ring | None, law: np.void, where: Seen) -> tuple[
         where.some,
         where.spans,
         pad.face,
+        pad.sensor_width,
         ring is None,
         *of_pad,
         law,
@@ -116,8 +120,8 @@ def _arguments(pad: Pad, ring: Ring | None, law: np.void, where: Seen) -> tuple[
 
 @njit(cache=True, error_model="numpy", nogil=True)
 def _press(
-    axes, corner, height, shares, pitch, begin, places, some, spans, face, of_face, points, areas, stiffness, counted,
-    span, loads, forces, near, soft, law, resistance, found,
+    axes, corner, height, shares, pitch, begin, places, some, spans, face, sensor, of_face, points, areas, stiffness,
+    counted, span, loads, forces, near, soft, law, bodies, found,
 ):  # fmt: skip
     """Fills found, of `pressed` or `conducted`. of_face: whether the face is looked at, or a ring. span: from which of
     the points up to which are on the face. loads: m3, forces N over the stiffness of springs around the face.
@@ -161,7 +165,7 @@ def _press(
                 if found.shape[3] == 2:
                     at[n, 0], at[n, 1] = area, share + flat * (softly - share)
                 else:
-                    where = areas[0], places[0, a], places[1, b], spans, face
+                    where = areas[0], places[0, a], places[1, b], spans, face, sensor
                     load = share * forces[n], softly * forces[n]
                     what = heights, cover, slopes, depth, touching, beside
                     _conduct(
@@ -173,7 +177,7 @@ def _press(
                         load,
                         where,
                         law,
-                        resistance,
+                        bodies,
                         crown,
                         shape,
                         flat,
@@ -194,16 +198,17 @@ def _touches(near, count, cover, depth, span):
 
 
 @njit(cache=True, error_model="numpy")
-def _conduct(points, near, count, what, area, load, where, law, resistance, crown, shape, flat, row):
+def _conduct(points, near, count, what, area, load, where, law, bodies, crown, shape, flat, row):
     """Fills a row of `conducted`. near, count: the springs that touch. what: (n,) heights m, cover m2, slopes m; m, by
     which springs sink in; (C,) m2 of the contact at each point; (C,), room. where: what `lie` takes after the moments,
     without a least length. load: N on a rigid face and on one like the pad. crown, shape: of _crown, within the
     roughness and without it. flat: the share of what the mesh covers of the face that touches. Heat is constricted here
     from the patch in whose gas it spreads to the contact: not where the two are one, under a flush face."""
     heights, cover, slopes, depth, touching, beside = what
-    face, found, rigid = where[-1], np.zeros(5), law.modulus > 0.0
+    resistance, series = bodies
+    face, found, rigid = where[-2], np.zeros(5), law.modulus > 0.0
     least, round, touches = 0.0, 0.0, _contact_moments(points, near, count, touching)
-    gaps, free, given, of_line = heights, 1.0, 0.0, 0.0
+    gaps, free, given, of_line, long = heights, 1.0, 0.0, 0.0, 0.0
     curved, stiffly, load = min(flat, 1.0), load[0], load[0] + flat * (load[1] - load[0])
     if area > 0.0:
         lie(touches, *where, 0.0, found)
@@ -249,7 +254,7 @@ def _conduct(points, near, count, what, area, load, where, law, resistance, crow
         less, around = _beside(points, gaps, cover, touching, gap, beside)
         conducts = law.gas * free
         gas, less, around = conducts * around.s, conducts * less, mixed(around, conducts, around, 0.0)
-    total, wide = solid + gas, area
+    total, wide, whole = solid + gas, area, area
     freely = gas
     if gas > 0.0 or (given > 0.0 and law.mean_gap > 0.0):
         # what would flow under the contact without force is as wide as beside a constricted one, and no less where all
@@ -258,6 +263,7 @@ def _conduct(points, near, count, what, area, load, where, law, resistance, crow
     if gas > 0.0:
         rest = max(face * face - area, 0.0)
         wide += min(gas * less * resistance / (gas - less), rest) if gas > less else rest
+        whole = wide
         if not rigid:
             wide = area + (wide - area) * gas / freely
         elif of_line > 0.0:
@@ -265,12 +271,19 @@ def _conduct(points, near, count, what, area, load, where, law, resistance, crow
             wide = area + (wide - area) * (1.0 - given * (1.0 - gas / freely))
         lie(mixed(around, wide / gas, around, 0.0), *where, least, found)
         row[5] = found[4]
+    small = area
     if total > 0.0:
         patch = ((total - freely) * area + freely * wide) / total
+        apart = (1.0 - _compact(round)) * (1.0 - min(curved, 1.0))  # of a line, whose constriction is not told yet
+        if rigid and gas > 0.0 and area > 0.0 and apart > 0.0 and total - freely > _FEW * total:
+            flows = two_flows(total - freely, freely, area, whole, resistance, series, min(long, face))
+            if flows > patch:
+                patch += apart * (flows - patch)
+                small, wide = widened(total - freely, freely, area, whole, patch)
         one, other = solid / area if area > 0.0 else 0.0, 1.0 if gas > 0.0 else 0.0
         lie(mixed(touches, patch / total * one, around, patch / total * other), *where, least, found)
     row[:4] = found[:4]
-    row[6], row[7], row[8], row[9] = total - freely, freely, area, wide
+    row[6], row[7], row[8], row[9] = total - freely, freely, small, wide
 
 
 @njit(cache=True, error_model="numpy")

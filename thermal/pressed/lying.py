@@ -15,15 +15,20 @@ _ALIKE = 1e-9  # of the moment, by which neither axis is the longer one
 _WHOLE = 0.98  # of the face: what is longer covers it, to its points
 
 
-def end(shares: np.ndarray, lengths: np.ndarray) -> None:
-    """Where a contact vanishes it is a strip at both ends. shares: (forces, places, places, 4) and lengths the same way
-    along the second axis, at places of which the first and the last touch nothing."""
+def end(shares: np.ndarray, lengths: np.ndarray, *, bordering: bool) -> None:
+    """Where a contact vanishes it is a strip at both ends: of the mesh, and of the sensor's face unless the pad is
+    narrower and it is not bordering on them. shares: (forces, places, places, 4) and lengths the same way along the
+    second axis, at places of which the first and the last touch nothing."""
     for end, beside in ((0, 1), (-1, -2)):
         lengths[:, end], shares[:, end] = lengths[:, beside], shares[:, beside]
-        shares[:, end, :, 0], shares[:, end, :, 2] = 1.0, 1.0
+        shares[:, end, :, 2] = 1.0
+        if bordering:
+            shares[:, end, :, 0] = 1.0
     for end, beside in ((0, 1), (-1, -2)):
         shares[:, :, end], lengths[:, :, end] = shares[:, :, beside], 0.0
-        shares[:, :, end, 1], shares[:, :, end, 3] = 1.0, 1.0
+        shares[:, :, end, 3] = 1.0
+        if bordering:
+            shares[:, :, end, 1] = 1.0
 
 
 class Moments(NamedTuple):
@@ -51,9 +56,10 @@ def mixed(one, a, other, b):
 
 
 @njit(cache=True, error_model="numpy")
-def lie(moments, square, aside, along, spans, face, least, found):
+def lie(moments, square, aside, along, spans, face, sensor, least, found):
     """Writes a contact's shares and its length m to found (5,), by its moments; a point counts as a square of that area
-    m2. aside, along: m, the pad's place. least: m, of the longer side."""
+    m2. aside, along: m, the pad's place. face: m, what it bears of the sensor's face, which is sensor m wide. least: m,
+    of the longer side."""
     s, y, z = moments.s, moments.y, moments.z
     if s == 0.0:
         return
@@ -71,5 +77,5 @@ def lie(moments, square, aside, along, spans, face, least, found):
         pad, off = (along, z / s) if axis == 1 else (aside, y / s)
         pad -= spans[axis] / 2
         length = face if length > _WHOLE * face else length
-        found[axis] = patch_offset(off, length, face)
-        found[2 + axis] = patch_ends(pad + off, pad, length, spans[axis] - face, face)
+        found[axis] = patch_offset(off, length, sensor)
+        found[2 + axis] = patch_ends(pad + off, pad, length, spans[axis] - face, sensor)

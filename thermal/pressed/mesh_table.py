@@ -34,6 +34,7 @@ from ..contact import (
     even_places,
     face_footprint,
     flat_law,
+    in_series,
     skinned,
     table_values,
     touching,
@@ -89,7 +90,7 @@ def _table(of: PressedMesh) -> np.ndarray:
         touched = view.touched(of.ring, bare=of.body if of.skin is None else None)
         return conducting(view.pad, touching_joint(of.skin, of.body, of.ring), view.places, touched)
     found = view.conducted(of.skin, of.body)
-    end(found[..., :4], found[..., 4:6])
+    end(found[..., :4], found[..., 4:6], bordering=of.pad.sensor is None)
     return filled(view.places, np.concatenate((found[..., 6:], found[..., 4:6]), axis=-1), found[..., :4])
 
 
@@ -126,9 +127,10 @@ class PressedView:
         tells it. skin: of which the pad has the springs; None for a bare face, which is rigid. Only W/K and m2 mean
         anything at the first and last place, where nothing is touched."""
         pad, law = self.pad, face_footprint(self.pad, skin, Surface.of(body))
-        return conducted(
-            bared(pad) if skin is None else pad, law, beneath(body, touching(skin)), self._seen(some)
-        )
+        if skin is None:
+            pad = bared(pad)
+        face = touching(skin)
+        return conducted(pad, law, beneath(body, face), in_series(body, face), self._seen(some))
 
     def _seen(self, some: tuple[tuple[int, int], tuple[int, int]]) -> Seen:
         return Seen(self.seen, self.begin, self.places, self.spans, np.array(some))

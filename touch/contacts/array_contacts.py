@@ -184,7 +184,8 @@ class ArrayContacts:
         which = as_integers(pair * 3 + axis)
         law = ArrayLaws(*(table[:, :, :, None] for table in self.laws.at(which)))
         area, share = array_contact(law, pressed, from_geom[..., None, :])
-        long, shares = array_flat_patch(law, area, from_geom[..., None, :])
+        width = self.width[:, None, None]
+        long, shares = array_flat_patch(law, area, from_geom[..., None, :], width)
         kept = longer = narrow = 1.0 + 0.0 * area
         if self.any_bulging:
             area, share, kept, longer, even = self._of_round(
@@ -195,7 +196,6 @@ class ArrayContacts:
             safe = xp.where(area > 0, area * kept * narrow * longer, 1.0 + 0.0 * area)
             long = xp.where(bulging, safe**0.5, long)
             shares = xp.where(bulging[..., None], 0.0 * shares, shares)
-        width = self.width[:, None, None]
         pressure = share / xp.where(area > 0, area, area + width**2)
         area = area * kept
         closed = (area > 0) & (pressure > 0)

@@ -38,7 +38,7 @@ from ...thermal.contact import (
 )
 from ...thermal.padded import RINGS, ring_sides
 from ...thermal.pressed import PressedMesh, Ring, RoundRing
-from ..scene import BodyShape, PadPlace, is_round, mesh_of
+from ..scene import BodyShape, PadPlace, has_edge, mesh_of
 from .tilt import TILT, tilt_row
 from .views import ellipsoid_radii, stacked_views
 
@@ -89,7 +89,7 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
         silicone = pad.silicone
         sheet = skinned(silicone, pad.skin)
         # a round geom under a rod has no edge on which the rod could come to lie
-        flat, rings = not all(is_round(model, geom) for geom in pad.geoms), _rings(pad)
+        flat, rings = any(has_edge(model, geom, pad.axes[:, 0]) for geom in pad.geoms), _rings(pad)
         for g, (shape, geom) in enumerate(geoms):
             other, around = Surface.of(shape.material), None
             faces = face_joint(pad.skin, other)

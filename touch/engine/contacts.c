@@ -195,7 +195,8 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
       place[2] = z * cos(turn) - y * sin(turn);
     }
     heat_contact(law, force, place, &area, &share);
-    if (area > 0) length = heat_flat_patch(law, area, place, shares);
+    double other_width = other ? numbers->pads[(g - numbers->geoms) * PAD + WIDTH] : 0;
+    if (area > 0) length = heat_flat_patch(law, area, place, numbers->pads[f * PAD + WIDTH], other_width, shares);
   }
   if (area > 0 && share > 0) {
     conducts = heat_conductance(law, numbers, share / area) * area * on_face;

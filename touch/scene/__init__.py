@@ -14,7 +14,7 @@ from .fingertips import Fingertip, PadPlace
 from .names import find, geom_label, geoms_of
 from .own_shape import own_shapes, warn_of_boxes
 from .pads import pads
-from .round_faces import is_round
+from .round_faces import has_edge
 from .steps import LONGEST, samples_in, whole_steps
 
 __all__ = [
@@ -33,7 +33,7 @@ __all__ = [
     "geom_label",
     "geoms_of",
     "glued_elements",
-    "is_round",
+    "has_edge",
     "largest_face",
     "materials_by_world",
     "mesh_of",

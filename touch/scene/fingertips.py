@@ -10,7 +10,7 @@ import numpy as np
 from thermograsp.errors import InvalidValueError, celsius, length, numbers
 
 from ...thermal import Material, Pad, SensorStack, Skin, Surface, Surround, Thermostat
-from ...thermal.contact import touching
+from ...thermal.contact import NARROW, touching
 from ...thermal.stack import HeatedStack
 
 _LEANING = 10.0  # degrees of a straight fingertip, beyond which its sensor's face is off what it touches
@@ -121,6 +121,8 @@ class PadPlace:
     @property
     def silicone(self) -> Pad:
         """The pad without its skin, as wide as a square of its area. A sensor's face that is wider than a side of the
-        pad touches with what the pad bears of it, a square of that area."""
+        pad touches with what the pad bears of it, a square of that area in its middle."""
         borne = self.size if self.bare else np.minimum(self.stack.width, self.size)
-        return Pad(width=math.sqrt(self.size.prod()), face=math.sqrt(borne.prod()))
+        face, whole = math.sqrt(borne.prod()), self.stack.width
+        sensor = whole if face < whole * NARROW else None
+        return Pad(width=math.sqrt(self.size.prod()), face=face, sensor=sensor)

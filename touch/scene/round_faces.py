@@ -36,6 +36,14 @@ def is_round(model: mujoco.MjModel, geom: int) -> bool:
     return mujoco.mjtGeom(int(model.geom_type[geom])) in _ROUND_KINDS
 
 
+def has_edge(model: mujoco.MjModel, geom: int, normal: np.ndarray) -> bool:
+    """Whether a flat pad with a normal in its body's frame has an edge on that geom: on any that is not round, and on
+    a cylinder's end."""
+    if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_CYLINDER:
+        return abs(float(rotation(model.geom_quat[geom])[:, 2] @ normal)) > _STRAIGHT
+    return not is_round(model, geom)
+
+
 _ROUND_KINDS = (
     mujoco.mjtGeom.mjGEOM_SPHERE,
     mujoco.mjtGeom.mjGEOM_CAPSULE,

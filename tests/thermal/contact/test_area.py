@@ -19,6 +19,15 @@ K = PAD.foundation_modulus
 FORCES = np.concatenate(([0.0], np.geomspace(1e-3, 1e4, 29)))
 
 
+def test_a_sensor_is_no_narrower_than_what_touches_of_it() -> None:
+    assert Pad(width=0.006, face=0.006).sensor_width == 0.006
+    assert Pad(width=0.006, face=0.006, sensor=0.009).sensor_width == 0.009
+    with pytest.raises(
+        InvalidValueError, match=r"sensor 0.005 m is narrower than what touches of it, 0.006 m"
+    ):
+        Pad(width=0.006, face=0.006, sensor=0.005)
+
+
 def test_sphere_follows_the_winkler_foundation() -> None:
     """Johnson, Contact Mechanics, section 4.3: F = pi K a^4/(4 R d) = pi K R delta^2/d with a^2 = 2 R delta."""
     radius, force = 0.03, np.array([0.01, 0.1, 1.0])

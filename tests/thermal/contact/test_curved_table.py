@@ -14,6 +14,7 @@ from thermograsp.thermal.contact import (
     conduction,
     curved_contact,
     curved_table,
+    curved_touch,
     even_patch,
     face_joint,
     flat_footprint,
@@ -213,6 +214,16 @@ def test_a_bare_ball_off_the_middle_is_a_sum_over_hertzs_gap(name: str, radius: 
 def test_a_patch_that_is_nearly_as_wide_as_the_face_is_a_number(radius: float, length, name: str) -> None:
     """A part in 1e9 more, and it counts as the whole face."""
     assert np.isfinite(curved_table(PAD, None, material(name), radius, length)).all()
+
+
+@pytest.mark.parametrize("skin", [None, "filled_silicone"])
+def test_a_narrow_pad_lies_in_the_middle_of_the_sensors_face(skin: str | None) -> None:
+    """A rod's line of 6 mm is as long as a sensor of 6 mm, and lies in the middle of one of 9."""
+    worn = None if skin is None else SKINS[skin]
+    for sensor, expected in ((None, 1.0), (0.009, 0.0)):
+        pad, shares = Pad(width=0.006, face=0.006, sensor=sensor), np.empty(4)
+        curved_touch(curved_table(pad, worn, material("steel"), 0.01, 0.04), 5.0, 0.0, 0.0, shares)
+        np.testing.assert_allclose(shares, [0.0, expected, 0.0, expected], atol=1e-12)
 
 
 @pytest.mark.parametrize("less", [1e-16, 1e-12, 1e-9, 1.1e-9, 4e-9, 1e-8, 1e-6])
