@@ -71,7 +71,7 @@ from .rough_faces import (
     typical_slope,
 )
 from .round_bodies import disc_on_face
-from .spread import beneath, even_patch, in_series, narrowing, two_flows, widened
+from .spread import beneath, even_patch, narrowing, resistivity, two_flows, widened
 
 __all__ = [
     "AIR",
@@ -147,6 +147,7 @@ __all__ = [
     "patch_offset",
     "rigid_cylinder",
     "rigid_sphere",
+    "resistivity",
     "round_footprint",
     "skinned",
     "solid_conduction",

@@ -30,7 +30,7 @@ from .fingertip import touching
 from .law import CYLINDER, round_footprint
 from .patch_place import patch_ends, patch_offset
 from .rough_faces import Surface
-from .spread import beneath, in_series, patches
+from .spread import beneath, patches, resistivity
 
 FORCES, PLACES = 14, 24
 FIRST_FORCE, FORCE_STEP = math.log(0.02), math.log(2.2)
@@ -67,7 +67,7 @@ def curved_table(
         law,
         pad.sensor_width,
         beneath(body, face),
-        in_series(body, face),
+        resistivity(body, face),
         np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES)),
         aside,
         along,

@@ -34,7 +34,7 @@ _MIDDLE = np.zeros(3)
 
 def even_patch(law: np.void, body: Material, force: float, face: Surface = LAPPED_ALUMINA) -> float:
     """m2, of a bare_footprint of the body at a force N > 0 on the pad, over the face's middle."""
-    return float(patches(law, beneath(body, face), in_series(body, face), force, _MIDDLE)[4])
+    return float(patches(law, beneath(body, face), resistivity(body, face), force, _MIDDLE)[4])
 
 
 def narrowing(body: Surface, face: Surface = LAPPED_ALUMINA) -> float:
@@ -53,15 +53,15 @@ def beneath(body: Material, face: Surface) -> float:
     return depth * (1 / face.conductivity + 1 / body.conductivity)
 
 
-def in_series(body: Material, face: Surface = LAPPED_ALUMINA) -> float:
-    """m K/W of both bodies."""
+def resistivity(body: Material, face: Surface = LAPPED_ALUMINA) -> float:
+    """m K/W, the reciprocal of both bodies' conductivities in series."""
     return 1 / face.conductivity + 1 / body.conductivity
 
 
 @njit(cache=True, error_model="numpy")
 def patches(law, resistance, series, force, place):
     """(W/K of the contact, W/K of the gas, m2 of their two patches, m2 of the one that stands for both) at a force
-    N > 0 on the pad. resistance: of beneath; series: of in_series."""
+    N > 0 on the pad. resistance: of beneath; series: of resistivity."""
     contact, gas, area, wide, whole = both_contacts(law, resistance, force, place)
     total = contact + gas
     if total <= 0.0:
@@ -84,8 +84,8 @@ def patches(law, resistance, series, force, place):
 
 @njit(cache=True, error_model="numpy")
 def widened(contact, gas, area, whole, patch):
-    """m2 of the contact's and of the gas's patch, `whole` at most, whose mean by what they conduct is `patch`. area: m2,
-    of the contact at least."""
+    """m2 of the contact's patch, of area m2 at least, and of the gas's, `whole` at most, whose mean by what they
+    conduct is `patch`."""
     wide = (patch * (contact + gas) - contact * area) / gas
     if wide > whole:
         return (patch * (contact + gas) - gas * whole) / contact, whole

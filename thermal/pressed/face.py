@@ -274,7 +274,9 @@ def _conduct(points, near, count, what, area, load, where, law, bodies, crown, s
     small = area
     if total > 0.0:
         patch = ((total - freely) * area + freely * wide) / total
-        apart = (1.0 - _compact(round)) * (1.0 - min(curved, 1.0))  # of a line, whose constriction is not told yet
+        apart = (1.0 - _compact(round)) * (
+            1.0 - min(curved, 1.0)
+        )  # of a line, whose constriction is not told yet
         if rigid and gas > 0.0 and area > 0.0 and apart > 0.0 and total - freely > _FEW * total:
             flows = two_flows(total - freely, freely, area, whole, resistance, series, min(long, face))
             if flows > patch:

@@ -34,7 +34,7 @@ from ..contact import (
     even_places,
     face_footprint,
     flat_law,
-    in_series,
+    resistivity,
     skinned,
     table_values,
     touching,
@@ -130,7 +130,7 @@ class PressedView:
         if skin is None:
             pad = bared(pad)
         face = touching(skin)
-        return conducted(pad, law, beneath(body, face), in_series(body, face), self._seen(some))
+        return conducted(pad, law, beneath(body, face), resistivity(body, face), self._seen(some))
 
     def _seen(self, some: tuple[tuple[int, int], tuple[int, int]]) -> Seen:
         return Seen(self.seen, self.begin, self.places, self.spans, np.array(some))
