@@ -201,7 +201,7 @@ def _beside(
         touched = np.where(sunk > 0, covered, 0.0)
         pressed, lies = touched * sunk * stiffer, np.zeros(5)
         moments = Moments(*(powers @ (touched * within)[on_face] * pitch**2).tolist())
-        lie(moments, pitch**2, *place, spans, pad.face, 0.0, lies)
+        lie(moments, pitch**2, *place, spans, pad.face, pad.sensor_width, 0.0, lies)
         contact = [lies[4] / math.sqrt(moments.s) if moments.s > 0 else 1.0, *lies[:4]]
         for ring in beside:
             contact += [touched[ring].sum() * pitch**2, pressed[ring].sum() / pressed.sum() * force]

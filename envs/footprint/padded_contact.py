@@ -126,7 +126,7 @@ def touch_pads(law, beside, tables, rings, lying, halves, normal, place, touches
                 conducts = solid_conduction(law[0], area, load) + gas_conduction(law[0], force, at)
                 long = 0.0
                 if area > 0.0:
-                    long = flat_patch(law[0], area, at, 2 * law[0].half_face, 0.0, shares)
+                    long = flat_patch(law[0], area, at, 2 * law[0].half_face, shares)
                 if len(halves) > 0:
                     even = beside_face(beside[0], halves, force, at, areas)
                     for ring in range(len(halves)):

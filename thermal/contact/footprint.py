@@ -203,11 +203,10 @@ def contact(law, force, place):
 
 
 @njit(cache=True, borrows=True, error_model="numpy")
-def flat_patch(law, area, place, width, other, shares):
+def flat_patch(law, area, place, width, shares):
     """m, the second side of a flat contact of that area m2 on the face; fills shares (4,) by which it lies at an end of
     the sensor's face of that width m along both sides, of which the law's is what the pad bears, and at an end of the
-    object (patch_place.py). other: m, the width of the sensor behind another fingertip's pad, 0 of an object. place: as
-    contact's."""
+    object (patch_place.py). place: as contact's."""
     for side in range(4):
         shares[side] = 0.0
     if law.size[0] == 0 or area >= width * width * NARROW:
@@ -218,11 +217,7 @@ def flat_patch(law, area, place, width, other, shares):
         low, high = max(-law.half_face, -pad - size / 2), min(law.half_face, size / 2 - pad)
         length = high - low
         shares[side] = patch_offset((low + high) / 2, length, width)
-        middle = pad + (low + high) / 2
-        if other > 0.0:
-            shares[2 + side] = patch_offset(middle, length, other)
-        else:
-            shares[2 + side] = patch_ends(middle, pad, length, size, width)
+        shares[2 + side] = patch_ends(pad + (low + high) / 2, pad, length, size, width)
     return length
 
 

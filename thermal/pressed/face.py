@@ -85,7 +85,7 @@ def pressed(pad: Pad, ring: Ring | None, law: np.void, where: Seen) -> np.ndarra
     """(FORCES, rows, columns, 2): m2 that touch of the sensor's face, or of a ring around it, and their share of the
     force. pad: with its springs. law: of face_footprint; a bare face is rigid."""
     touched = where.room(2)
-    _press(*_arguments(pad, ring, law, where), 0.0, touched)
+    _press(*_arguments(pad, ring, law, where), (0.0, 0.0), touched)
     return touched
 
 
@@ -274,9 +274,8 @@ def _conduct(points, near, count, what, area, load, where, law, bodies, crown, s
     small = area
     if total > 0.0:
         patch = ((total - freely) * area + freely * wide) / total
-        apart = (1.0 - _compact(round)) * (
-            1.0 - min(curved, 1.0)
-        )  # of a line, whose constriction is not told yet
+        # of a line, whose constriction is not told yet
+        apart = (1.0 - _compact(round)) * (1.0 - min(curved, 1.0))
         if rigid and gas > 0.0 and area > 0.0 and apart > 0.0 and total - freely > _FEW * total:
             flows = two_flows(total - freely, freely, area, whole, resistance, series, min(long, face))
             if flows > patch:

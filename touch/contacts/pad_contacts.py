@@ -256,8 +256,9 @@ def feel(
                     _between_turned(frames, f, g - (part_count - tips), place)
                 area, share = contact(law, force, place)
                 if area > 0:
-                    other_width = pads[g - (part_count - tips), WIDTH] if geom < 0 else 0.0
-                    long = flat_patch(law, area, place, pads[f, WIDTH], other_width, shares)
+                    # of two fingertips both faces count as wide as what touches of them, whichever is named first
+                    wide = pads[f, WIDTH] if geom >= 0 else 2 * law.half_face
+                    long = flat_patch(law, area, place, wide, shares)
             for ring in range(1 + RINGS if pads[f, AROUND] > 0 else 1):
                 for turn in range(2 if part > 0 else 1):
                     known = curved[f, g, next_side if turn else side, ring] if number >= 0 else -1

@@ -195,8 +195,9 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
       place[2] = z * cos(turn) - y * sin(turn);
     }
     heat_contact(law, force, place, &area, &share);
-    double other_width = other ? numbers->pads[(g - numbers->geoms) * PAD + WIDTH] : 0;
-    if (area > 0) length = heat_flat_patch(law, area, place, numbers->pads[f * PAD + WIDTH], other_width, shares);
+    /* of two fingertips both faces count as wide as what touches of them, whichever is named first */
+    double wide = other ? 2 * law->half_face : numbers->pads[f * PAD + WIDTH];
+    if (area > 0) length = heat_flat_patch(law, area, place, wide, shares);
   }
   if (area > 0 && share > 0) {
     conducts = heat_conductance(law, numbers, share / area) * area * on_face;

@@ -155,7 +155,7 @@ void heat_behind(const Numbers* numbers, int f, double drawn, double force, doub
 
 double heat_conductance(const Law* law, const Numbers* numbers, double pressure);
 void heat_contact(const Law* law, double force, const double place[3], double* area, double* share);
-double heat_flat_patch(const Law* law, double area, const double place[3], double width, double other, double shares[4]);
+double heat_flat_patch(const Law* law, double area, const double place[3], double width, double shares[4]);
 double heat_round_contact(const double* bend, const double* curve, const double sides[SIDES], double force, double y, double z,
                           double* area, double* share, double* longer, double* even);
 

@@ -42,7 +42,7 @@ static double patch_ends(double middle, double pad, double length, double side, 
   return lesser(greater(log(whole / near) / log(width / length), 0), 1);
 }
 
-double heat_flat_patch(const Law* law, double area, const double place[3], double width, double other, double shares[4]) {
+double heat_flat_patch(const Law* law, double area, const double place[3], double width, double shares[4]) {
   double length = 0;
   for (int side = 0; side < 4; side++) shares[side] = 0;
   if (law->size[0] == 0 || area >= width * width * (1 - 1e-9)) return sqrt(area);
@@ -51,8 +51,7 @@ double heat_flat_patch(const Law* law, double area, const double place[3], doubl
     double low = greater(-law->half_face, -pad - size / 2), high = lesser(law->half_face, size / 2 - pad);
     length = high - low;
     shares[side] = patch_offset((low + high) / 2, length, width);
-    double middle = pad + (low + high) / 2;
-    shares[2 + side] = other > 0 ? patch_offset(middle, length, other) : patch_ends(middle, pad, length, size, width);
+    shares[2 + side] = patch_ends(pad + (low + high) / 2, pad, length, size, width);
   }
   return length;
 }
