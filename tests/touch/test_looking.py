@@ -8,7 +8,6 @@ from typing import Any
 import mujoco
 import numpy as np
 import pytest
-import trimesh
 
 from thermograsp.errors import InvalidValueError
 from thermograsp.touch import Fingertip, ThermalTouch
@@ -35,10 +34,6 @@ def hand(
         <joint type="hinge" axis="0 0 1" range="-90 90"/><geom type="box" size=".04 .01 .05"/>{fingers}
         <body name="thumb" pos="-.05 0 .03"><joint type="hinge" axis="1 1 0" range="-90 0"/>
         <geom type="{shape}" {SHAPES[shape]}/></body></body></worldbody></mujoco>""")
-
-
-def translated(*by: float) -> np.ndarray:
-    return trimesh.transformations.translation_matrix(by)
 
 
 def looks(model: mujoco.MjModel, *bodies: str) -> np.ndarray:
@@ -178,11 +173,14 @@ def test_one_fingertip_looks_at_the_nearest_place_of_the_nearest_object(aside: f
 
 def test_a_pad_is_on_the_hull_that_touches() -> None:
     """A finger whose mesh is hollowed out where it looks: MuJoCo has contacts with its convex hull."""
-    block = trimesh.creation.box((0.02, 0.02, 0.04))
-    groove = trimesh.creation.box((0.012, 0.012, 0.05), transform=translated(0, -0.008, 0))
-    mesh = trimesh.boolean.difference([block, groove], engine="manifold")
+    outline = [(-10, -10), (-6, -10), (-6, -2), (6, -2), (6, -10), (10, -10), (10, 10), (-10, 10)]
+    points = np.array([(x, y, z) for z in (-20, 20) for x, y in outline]) / 1e3
+    top = np.array([(0, 1, 2), (0, 2, 7), (2, 3, 6), (2, 6, 7), (3, 4, 5), (3, 5, 6)])
+    ends = [(n, (n + 1) % 8) for n in range(8)]
+    sides = [(i, j, j + 8) for i, j in ends] + [(i, j + 8, i + 8) for i, j in ends]
+    faces = np.concatenate((top + 8, top[:, ::-1], sides))
     spec = mujoco.MjSpec()
-    spec.add_mesh(name="m", uservert=mesh.vertices.ravel(), userface=mesh.faces.ravel())
+    spec.add_mesh(name="m", uservert=points.ravel(), userface=faces.ravel())
     body = spec.worldbody.add_body(name="tip")
     body.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="m")
     (pad,) = pads(spec.compile(), {"tip": Fingertip("tip", normal=(0, -1, 0))}, ())
