@@ -60,7 +60,7 @@ def mesh_of(model: mujoco.MjModel, geom: int) -> tuple[np.ndarray, np.ndarray]:
     return vertices, model.mesh_face[first : first + count].astype(np.int64)
 
 
-def hull_of(model: mujoco.MjModel, geom: int) -> np.ndarray:
+def _hull(model: mujoco.MjModel, geom: int) -> np.ndarray:
     """(n, 3, 3) m: triangles of a mesh geom's convex hull, outwards, in its frame; of the mesh where the model has no
     hull of it. MuJoCo has contacts with the hull."""
     vertices, faces = mesh_of(model, geom)
@@ -82,8 +82,7 @@ def triangles(model: mujoco.MjModel, geom: int, hull: bool = False) -> np.ndarra
     their convex hulls."""
     kind, size = model.geom_type[geom], model.geom_size[geom]
     if kind == mujoco.mjtGeom.mjGEOM_MESH:
-        vertices, faces = mesh_of(model, geom)
-        found = hull_of(model, geom) if hull else vertices[faces]
+        found = _hull(model, geom) if hull else np.take(*mesh_of(model, geom), axis=0)
     elif kind == mujoco.mjtGeom.mjGEOM_BOX:
         sides = _BOX * size
         found = np.concatenate([sides[:, [0, 1, 2]], sides[:, [0, 2, 3]]])
