@@ -575,7 +575,7 @@ class ThermalTouch:
         counts = model.nq, model.nv, model.nu, model.na, model.nbody, model.ngeom
         if model.ngeom != self._model.ngeom:
             return counts
-        used = [geom for each in (*self._pads, *self._shapes) for geom in each.geoms]
+        used = [geom for each in (*self._pads, *self._shapes) for geom in each.touched]
         geoms = model.geom_type, model.geom_size, model.geom_pos, model.geom_quat
         return model.names, counts, *(each[used].tobytes() for each in geoms)
 

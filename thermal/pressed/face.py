@@ -9,10 +9,7 @@ Under a crest the rigid face bears nearly all of the force. A flat face meets it
 then taken as the same all over, as they are for boxes (thermal/contact/area.py). In between, the share that touches of
 what the mesh covers of the face tells how flat that is.
 
-A soft mesh gives way further than its roughness. What lies less than h below its highest point touches then, A in all,
-and bears (8/3) E* h sqrt(A/pi), or pi/2 E* h per length of a line: Hertz's laws, in which h is a^2/(2 R) and A is not
-told by the radius. Its gap is Hertz's, too. As under a ball (thermal/contact/footprint.py) a crown's contact stays on
-the face, up to the face's size.
+A soft mesh gives way further than its roughness (soft.py).
 """
 
 from __future__ import annotations
@@ -24,21 +21,12 @@ import numpy as np
 
 from thermograsp.compiled import njit
 
-from ..contact import (
-    FIRST_FORCE,
-    FORCE_STEP,
-    FORCES,
-    Pad,
-    conductance,
-    constricted,
-    disc_on_face,
-    two_flows,
-    widened,
-)
+from ..contact import FIRST_FORCE, FORCE_STEP, FORCES, Pad, conductance, constricted, two_flows, widened
+from .crown import CURVED, LINE, at_edge, compact, crown_at, hertz_contact
 from .height_map import HeightMap, map_heights
 from .lying import Moments, lie, mixed
+from .soft import hertz_gaps, on_rigid, softly, touch_at
 from .springs import (
-    LEAST_RISE,
     Ring,
     borne,
     loads,
@@ -51,18 +39,7 @@ from .springs import (
     under,
 )
 
-_AROUND = 1e-3  # m, within which a crown's curvature is told
-_LINE, _COMPACT = 0.1, 0.25
-"""Breadth over length of a contact up to which it is a line, which constricts no heat here, and from which it does so
-as a disc."""
 _FEW = 1e-6  # of what both conduct: less is no contact
-_SPOT = 8 / 3  # times Hertz's modulus, the radius and the height of what touches: the force on a spot
-_STEPS, _CLOSE = 40, 1e-3  # at most, to a height that is known to that share
-_CURVED = 1e-3  # of the face: what touches less is no flat face
-_FEWEST = 30  # points
-_UPRIGHT = 1e-9  # of a point, by which all paraboloids that fit points in a line are told apart
-_FLATTEST = 0.5  # m, of the radii of crowns
-_UNLIKE = 0.1  # of the squares of the heights' differences, that a paraboloid leaves at most
 
 
 class Seen(NamedTuple):
@@ -143,12 +120,12 @@ def _press(
             if cover[:counted].max() == 0.0:
                 continue
             lowered(heights, cover)
-            shape = _crown(points, heights, cover, counted, law) if rigid and of_face else no_crown
+            shape = crown_at(points, heights, cover, counted, law) if rigid and of_face else no_crown
             if rigid:
                 for i in range(len(points)):
                     heights[i] = max(heights[i] - law.roughness, 0.0)
             rises(heights, cover, slopes[:counted])
-            crown = _crown(points, heights, cover, counted, law) if rigid and of_face else no_crown
+            crown = crown_at(points, heights, cover, counted, law) if rigid and of_face else no_crown
             covered = cover[span[0] : span[1]].sum()
             count = under(heights, cover, stiffness, slopes, near)
             evenly = under(heights, cover, even, slopes, soft) if rigid else 0
@@ -157,7 +134,7 @@ def _press(
                 depth, area, share = borne(near, count, cover, loads[n], depth, touching)
                 count = touched_less(near, count, depth)
                 flat = _touches(near, count, cover, depth, span) / covered if rigid and covered > 0.0 else 0.0
-                if flat > _CURVED:
+                if flat > CURVED:
                     soft_depth, _, softly = borne(soft, evenly, cover, loads[n], soft_depth, beside)
                     evenly = touched_less(soft, evenly, soft_depth)
                 else:
@@ -201,7 +178,7 @@ def _touches(near, count, cover, depth, span):
 def _conduct(points, near, count, what, area, load, where, law, bodies, crown, shape, flat, row):
     """Fills a row of `conducted`. near, count: the springs that touch. what: (n,) heights m, cover m2, slopes m; m, by
     which springs sink in; (C,) m2 of the contact at each point; (C,), room. where: what `lie` takes after the moments,
-    without a least length. load: N on a rigid face and on one like the pad. crown, shape: of _crown, within the
+    without a least length. load: N on a rigid face and on one like the pad. crown, shape: of crown_at, within the
     roughness and without it. flat: the share of what the mesh covers of the face that touches. Heat is constricted here
     from the patch in whose gas it spreads to the contact: not where the two are one, under a flush face."""
     heights, cover, slopes, depth, touching, beside = what
@@ -217,35 +194,35 @@ def _conduct(points, near, count, what, area, load, where, law, bodies, crown, s
         long = max(row[4], area / row[4])
         round, hertz = min(area / row[4] ** 2, row[4] ** 2 / area), area
         soft = heights, cover, slopes, max(depth, 0.0), area, long, shape, law
-        sunk, whole, curved, rounder, load = _softly(soft, round, flat, stiffly, load)
+        sunk, whole, curved, rounder, load = softly(soft, round, flat, stiffly, load)
         if sunk > soft[3]:
             given, round = 1.0 - (soft[3] + law.roughness) / (sunk + law.roughness), rounder
-            area, most = _touch_at(heights, cover, slopes, sunk, touching), cover[: len(touching)].sum()
+            area, most = touch_at(heights, cover, slopes, sunk, touching), cover[: len(touching)].sum()
             touches, hertz, depth = _all_moments(points, touching), area, sunk
             if shape[0] > 0.0:
-                of_line = long if round <= _LINE else 0.0
-                hertz, held = _on_rigid(shape, of_line, area, whole, sunk, law)
+                of_line = long if round <= LINE else 0.0
+                hertz, held = on_rigid(shape, of_line, area, whole, sunk, law)
                 hertz = min(hertz, most)
                 load *= held + curved * (1.0 - held)
                 if of_line == 0.0:
-                    gaps = _hertz_gaps(heights[: len(touching)], sunk, given, law.roughness)
+                    gaps = hertz_gaps(heights[: len(touching)], sunk, given, law.roughness)
             else:
                 lie(touches, *where, 0.0, found)
                 long = max(found[4], area / found[4])
                 round = area / long**2
             free = (most - hertz) / (most - area) if area < hertz else 1.0
         elif crown[0] > 0.0:
-            hertz, round = _hertz(crown, load, long, law.modulus)
-            hertz = min(hertz, cover[: len(touching)].sum() if _at_edge(crown[2], law) else area)
+            hertz, round = hertz_contact(crown, load, long, law.modulus)
+            hertz = min(hertz, cover[: len(touching)].sum() if at_edge(crown[2], law) else area)
         if hertz != area:
             touching *= hertz / area
             touches = mixed(touches, hertz / area, touches, 0.0)
             area = hertz
-        least = min(long, face) * (1.0 - _compact(round))
+        least = min(long, face) * (1.0 - compact(round))
     solid = 0.0
     if area > 0.0:
         solid = conductance(law, load / area) * area
-        solid = constricted(law, area, solid, law.constriction * _compact(round) * (1.0 - curved))
+        solid = constricted(law, area, solid, law.constriction * compact(round) * (1.0 - curved))
         lie(touches, *where, least, found)
         row[4] = found[4]
     gas, less, around = 0.0, 0.0, touches
@@ -275,7 +252,7 @@ def _conduct(points, near, count, what, area, load, where, law, bodies, crown, s
     if total > 0.0:
         patch = ((total - freely) * area + freely * wide) / total
         # of a line, whose constriction is not told yet
-        apart = (1.0 - _compact(round)) * (1.0 - min(curved, 1.0))
+        apart = (1.0 - compact(round)) * (1.0 - min(curved, 1.0))
         if rigid and gas > 0.0 and area > 0.0 and apart > 0.0 and total - freely > _FEW * total:
             flows = two_flows(total - freely, freely, area, whole, resistance, series, min(long, face))
             if flows > patch:
@@ -313,130 +290,6 @@ def _all_moments(points, touching):
 
 
 @njit(cache=True, error_model="numpy")
-def _softly(soft, round, flat, stiffly, load):
-    """(m and m2 of _given_way, how flat what touches counts, its breadth over its length, N on the face) of a body that
-    may give way. soft: of _given_way, but for the force and whether it is a line. round, flat: as roughness and springs
-    have them. stiffly, load: N that a rigid face bears, and one of that flatness."""
-    shape, depth, law, counts = soft[6], soft[3], soft[7], min(flat, 1.0)
-    if shape[0] == 0.0:
-        sunk, whole = _given_way(soft, round <= _LINE, load)
-        return sunk, whole, counts, round, load
-    _, rounder = _hertz(shape, load, soft[5], law.modulus)
-    sunk, whole = _given_way(soft, rounder <= _LINE, stiffly)
-    if sunk > depth and flat > _CURVED:
-        # a crown is the less flat the further it has given way
-        less = (depth + law.roughness) / (sunk + law.roughness)
-        softer = stiffly + less * (load - stiffly)
-        sunk, whole = _given_way(soft, rounder <= _LINE, softer)
-        if sunk > depth:
-            return sunk, whole, counts * less, rounder, softer
-    return sunk, whole, counts, rounder, load
-
-
-@njit(cache=True, error_model="numpy")
-def _given_way(soft, line, load):
-    """(m by which a body is flattened, less its roughness; m2 of the pad that a spot touches then); the depth and 0 m2
-    where springs and roughness are more than that. soft: (n,) heights m, cover m2 and slopes m; the depth m, m2 of the
-    face that touches then, m that this is long; of _crown; the law. line: whether it is one. load: N."""
-    heights, cover, slopes, depth, area, long, shape, law = soft
-    rough, modulus = law.roughness, law.modulus
-    low = depth + rough
-    if line:
-        return max(load / (math.pi / 2 * modulus * long) - rough, depth), 0.0
-    curved, level, whole = math.sqrt(shape[0] * shape[1]), low, 0.0
-    high = 2 * load / (_SPOT * modulus * math.sqrt(area / math.pi))
-    if curved > 0.0:
-        whole = math.pi * (0.75 * load / (curved * modulus)) ** (2 / 3)
-        level = _as_sphere(whole * curved / (2 * math.pi), curved)
-        if whole < math.pi * _AROUND**2:
-            return (level - rough, whole) if level > low else (depth, 0.0)
-    if high <= low:
-        return depth, 0.0
-    level = min(max(level, low), high)
-    for _ in range(_STEPS):
-        whole = _touched_at(heights, cover, slopes, level - rough)
-        bears = _SPOT * modulus * math.sqrt(whole / math.pi) * _as_paraboloid(level, curved)
-        if bears < load:
-            low = level
-        elif level == low:
-            return depth, 0.0
-        else:
-            high = level
-        further = level * (load / bears) ** (2 / 3)  # exactly so under a paraboloid
-        if not low < further < high:
-            further = (low + high) / 2
-        close = abs(further - level) <= _CLOSE * level
-        level = further
-        if close:
-            break
-    return (level - rough, whole) if level - rough > depth else (depth, 0.0)
-
-
-@njit(cache=True, inner=True, error_model="numpy")
-def _as_paraboloid(height, curved):
-    """m, of a paraboloid of that curvature 1/m, as wide as a sphere is at that height m: Hertz's laws are of one."""
-    return height * max(1.0 - curved * height / 2, 0.5)
-
-
-@njit(cache=True, inner=True, error_model="numpy")
-def _as_sphere(height, curved):
-    """The reverse, no higher than the sphere's middle."""
-    return (1.0 - math.sqrt(max(1.0 - 2 * curved * height, 0.0))) / curved
-
-
-@njit(cache=True, error_model="numpy")
-def _touched_at(heights, cover, slopes, depth):
-    """m2 of all springs at that depth m."""
-    area = 0.0
-    for i in range(len(heights)):
-        area += cover[i] * min(max((depth - heights[i]) / max(slopes[i], LEAST_RISE) + 0.5, 0.0), 1.0)
-    return area
-
-
-@njit(cache=True, error_model="numpy")
-def _touch_at(heights, cover, slopes, depth, touching):
-    """m2 of the face at that depth m. Fills touching (C,) m2."""
-    for i in range(len(touching)):
-        part = min(max((depth - heights[i]) / max(slopes[i], LEAST_RISE) + 0.5, 0.0), 1.0)
-        touching[i] = cover[i] * part
-    return touching.sum()
-
-
-@njit(cache=True, error_model="numpy")
-def _on_rigid(shape, of_line, area, whole, sunk, law):
-    """(m2 of the face, the part of the force on it) under a crown that has given way, as if it were over the face's
-    middle if the contact goes beyond the face. whole, sunk: as _given_way has them. of_line: m, of a line, 0 of a spot.
-    area: m2 of the face that touches."""
-    half = law.half_face
-    if of_line > 0.0:
-        wide, held = math.sqrt(2 * (sunk + law.roughness) / shape[0]), 1.0
-        if shape[2] + wide <= half:
-            return min(2 * wide * of_line, area), 1.0
-        if wide > half:
-            share = half / wide
-            wide, held = half, (3 - share * share) * share / 2
-        return 2 * wide * of_line, held
-    if shape[2] + math.sqrt(whole / math.pi) <= half:
-        return min(whole, area), 1.0
-    part, held = disc_on_face(whole / math.pi, half, 0.0, 0.0)
-    return whole * part, held
-
-
-@njit(cache=True, error_model="numpy")
-def _hertz_gaps(heights, sunk, given, rough):
-    """(C,) m: heights by which the gap beside a flattened crown is Hertz's. given: how much of it is due to the body,
-    not to roughness and springs; where nothing is, the gap is the shape's own."""
-    gaps, level = heights.copy(), sunk + rough
-    for i in range(len(gaps)):
-        square = (heights[i] - sunk) / level
-        if square > 0.0:
-            x = math.sqrt(square)
-            hertz = 2 / math.pi * (x + (square - 1.0) * math.atan(x))
-            gaps[i] -= given * level * (square - hertz)
-    return gaps
-
-
-@njit(cache=True, error_model="numpy")
 def _beside(points, heights, cover, touching, gap, rows):
     """(m, moments over m) of what does not touch, over its gap: of the moments' gaps m `gap` has what is above the
     heights and the least of all, and for the first a length more. rows: (C,), room."""
@@ -465,74 +318,8 @@ def _beside(points, heights, cover, touching, gap, rows):
     return less, Moments(s, y, z, yy, yz, zz)
 
 
-@njit(cache=True, inner=True, error_model="numpy")
-def _compact(round):
-    return min(max((round - _LINE) / (_COMPACT - _LINE), 0.0), 1.0)
-
-
 @njit(cache=True, error_model="numpy")
 def _no_more(row, above):
     """Lets a row of `conducted` conduct no more than that of the next force, however that touches."""
     row[7] = min(row[7], above[6] + above[7])
     row[6] = min(row[6], above[6] + above[7] - row[7])
-
-
-@njit(cache=True, error_model="numpy")
-def _crown(points, heights, cover, counted, law):
-    """(1/m, 1/m, m): how curved the mesh is, more and less, around what of it comes to the face first; 0 and 0 where
-    that is no crown: flat, or a shape that no paraboloid is. How far that is from the face's middle, along the side
-    where it is further."""
-    low, total, y, z = np.inf, 0.0, 0.0, 0.0
-    for i in range(counted):
-        if cover[i] > 0.0:
-            low = min(low, heights[i])
-    for i in range(counted):
-        if cover[i] > 0.0 and heights[i] <= low + law.roughness:
-            total += cover[i]
-            y += cover[i] * points[i, 0]
-            z += cover[i] * points[i, 1]
-    y, z = y / total, z / total
-    off = max(abs(y), abs(z))
-    terms = 6 if _at_edge(off, law) else 4  # beside a crown the surface slopes, too
-    matrix, right, square, count = np.zeros((terms, terms)), np.zeros(terms), 0.0, 0
-    row = np.ones(6)
-    for i in range(counted):
-        u, v = (points[i, 0] - y) / _AROUND, (points[i, 1] - z) / _AROUND
-        if u * u + v * v < 1.0 and cover[i] > 0.0:
-            height = heights[i] - low
-            row[1], row[2], row[3], row[4], row[5] = u * u, v * v, u * v, u, v
-            for j in range(terms):
-                right[j] += row[j] * height
-                for k in range(terms):
-                    matrix[j, k] += row[j] * row[k]
-            square += height**2
-            count += 1
-    if count < _FEWEST:
-        return 0.0, 0.0, off
-    for j in range(terms):
-        matrix[j, j] += _UPRIGHT * count  # of points in a line
-    found = np.linalg.solve(matrix, right)
-    spread = square - right[0] ** 2 / count
-    left = square - (found * right).sum()
-    mean, half = (found[1] + found[2]) / 2, np.hypot((found[1] - found[2]) / 2, found[3] / 2)
-    most, least = 2 * (mean + half) / _AROUND**2, 2 * (mean - half) / _AROUND**2
-    if not (most > 1 / _FLATTEST and left < _UNLIKE * spread):
-        return 0.0, 0.0, off
-    return most, max(least, 0.0), off
-
-
-@njit(cache=True, inner=True, error_model="numpy")
-def _at_edge(off, law):
-    """Whether a crown is at the face's edge, or beyond it."""
-    return off > law.half_face - _AROUND
-
-
-@njit(cache=True, error_model="numpy")
-def _hertz(crown, load, long, modulus):
-    """(m2 of Hertz's contact on a crown, how round it is: its breadth over its length). long: m, of the contact, where
-    the crown is a line."""
-    most, least, _ = crown
-    round = (least / most) ** (2 / 3)  # nearly, of Hertz's ellipse
-    if round <= _LINE:
-        return 4 * np.sqrt(load * long / (most * np.pi * modulus)), round
-    return np.pi * (0.75 * load / (np.sqrt(most * least) * modulus)) ** (2 / 3), round

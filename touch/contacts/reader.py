@@ -58,6 +58,8 @@ class ContactReader:
                 self._pads[f, AROUND:] = np.array(ring_sides(pad.stack.width, pad.surround)) / 2
         geoms = [(o, geom) for o, shape in enumerate(shapes) for geom in shape.geoms]
         self._role[[geom for _, geom in geoms]] = count + np.arange(len(geoms))
+        for shape in shapes:
+            self._role[list(shape.pieces)] = self._role[shape.geoms[0]]
         # of what a pad may meet: the target, the geom (-1 for a fingertip), its body, of meshes their views; of
         # fingertips too
         parts = [(o, geom, int(model.geom_bodyid[geom])) for o, geom in geoms]

@@ -138,6 +138,7 @@ def sensor_places(
     tip_of = {geom: f for f, pad in enumerate(found) for geom in pad.geoms}
     of_objects = [geom for shape in shapes for geom in shape.geoms]
     number_of = {geom: number for number, geom in enumerate(of_objects)}
+    number_of |= {piece: number_of[shape.geoms[0]] for shape in shapes for piece in shape.pieces}
     number_of |= {geom: len(of_objects) + f for geom, f in tip_of.items()}
     rows = [(tip_of[a], number_of[b], contacts[a, b]) for a, b in wanted]
     return SensorPlaces(
@@ -159,7 +160,7 @@ def sensor_places(
 
 def _pairs(found: Sequence[PadPlace], shapes: Sequence[BodyShape]) -> list[tuple[int, int]]:
     """Geoms that may meet: of a fingertip and of an object, or of two fingertips."""
-    of_objects = [geom for shape in shapes for geom in shape.geoms]
+    of_objects = [geom for shape in shapes for geom in shape.touched]
     pairs = [(pad_geom, geom) for pad in found for pad_geom in pad.geoms for geom in of_objects]
     for f, pad in enumerate(found):
         pairs += [

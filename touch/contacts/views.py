@@ -34,7 +34,7 @@ from thermograsp.compiled import njit
 from ...thermal import Pad
 from ...thermal.numerics import Array, as_integers, as_like, namespace_of
 from ...thermal.pressed import height_map, map_heights, pressure_map, square_middles
-from ..scene import mesh_of
+from ..scene import hull_of, mesh_of
 
 VIEW = 15
 """Of a view: three axes, the first into the mesh, and m along the others where the mesh begins, all in the geom's
@@ -66,8 +66,7 @@ _ONE_RADIUS = 1e-6  # relative difference, up to which two radii are one, in sin
 def mesh_views(model: mujoco.MjModel, geom: int) -> np.ndarray:
     """(K, VIEW) of a mesh geom, those of the largest faces first."""
     vertices, faces = mesh_of(model, geom)
-    hull = _hull(model, int(model.geom_dataid[geom]), faces).astype(np.int64)
-    return _views(vertices.tobytes(), faces.tobytes(), hull.tobytes())
+    return _views(vertices.tobytes(), faces.tobytes(), hull_of(model, geom).tobytes())
 
 
 @lru_cache(maxsize=256)
@@ -142,16 +141,6 @@ def _lying(vertices: np.ndarray, faces: np.ndarray, along: np.ndarray, middle: n
     # the pad's plane is where depth + tilt y + other z of the mesh's heights are
     lain = axes[0] - tilt * axes[1] - other * axes[2]
     return lain / np.linalg.norm(lain) if math.hypot(tilt, other) < _SLANT else along
-
-
-def _hull(model: mujoco.MjModel, mesh: int, faces: np.ndarray) -> np.ndarray:
-    """(m, 3): the triangles of a mesh's hull, or its own where MuJoCo has made none."""
-    first = int(model.mesh_graphadr[mesh])
-    if first < 0:
-        return faces
-    count, triangles = (int(number) for number in model.mesh_graph[first : first + 2])
-    first += 2 + 3 * count + 3 * triangles  # behind the edges of each vertex
-    return model.mesh_graph[first : first + 3 * triangles].reshape(-1, 3)
 
 
 def _view(vertices: np.ndarray, along: np.ndarray) -> np.ndarray:

@@ -108,7 +108,9 @@ def install(
         film=air,
         ambient=ambient,
     )
-    geoms = [geom for pad in found for geom in pad.geoms] + [geom for shape in shapes for geom in shape.geoms]
+    geoms = [geom for pad in found for geom in pad.geoms] + [
+        geom for shape in shapes for geom in shape.touched
+    ]
     spec.activate_plugin(PLUGIN)
     plugin = spec.add_plugin(name=name, plugin_name=PLUGIN, active=True)
     plugin.config = {"geoms": ",".join(_names(spec, geoms)), "numbers": numbers}

@@ -45,7 +45,11 @@ def packed(
     most = max(1, *(len(tip.side.rates) for tip in tips))
     owner = [o for o, shape in enumerate(shapes) for _ in shape.geoms]
     roles = np.concatenate([np.full(len(pad.geoms), f) for f, pad in enumerate(pads)])
-    roles = np.concatenate((roles, len(pads) + np.arange(len(owner))))
+    # a piece has the number of the geom behind it, which is the last of that number: the one that is felt
+    parts = np.cumsum([0, *(len(shape.geoms) for shape in shapes)])
+    for first, shape in zip(parts, shapes, strict=False):
+        numbers = [0] * len(shape.pieces) + list(range(len(shape.geoms)))
+        roles = np.concatenate((roles, len(pads) + first + np.array(numbers)))
     timestep = float(model.opt.timestep)
     nodes, backs = back_rows(sensors, fields, timestep * steps, ambient)
     found = pair_laws(model, pads, shapes)

@@ -5,6 +5,7 @@ B: worlds, F: fingertips, G: geoms of the objects, H: substeps, L: forces of a p
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -73,7 +74,7 @@ def record_places(places: SensorPlaces, pads: Sequence[PadPlace], geoms: int, li
     """Of pads on the first so many geoms, those of the objects, as integers of the library of `like`."""
     tips = len(pads)
     of_objects = [(f, g, at) for f, g, at in places.pairs.tolist() if g < geoms]
-    most = max(len(pad.geoms) for pad in pads)
+    most = max(Counter((f, g) for f, g, _ in of_objects).values(), default=1)
     address, count = np.full((tips, geoms, most), -1), np.zeros((tips, geoms), int)
     for f, g, at in of_objects:
         address[f, g, count[f, g]] = at

@@ -9,7 +9,7 @@ from .checks import (
     warn_of_wide_faces,
 )
 from .elements import glued_elements
-from .faces import Face, flat_faces, largest_face, mesh_of, rotation, triangles
+from .faces import Face, flat_faces, hull_of, largest_face, mesh_of, rotation, triangles
 from .fingertips import Fingertip, PadPlace
 from .names import find, geom_label, geoms_of
 from .own_shape import own_shapes, warn_of_boxes
@@ -34,6 +34,7 @@ __all__ = [
     "geoms_of",
     "glued_elements",
     "has_edge",
+    "hull_of",
     "largest_face",
     "materials_by_world",
     "mesh_of",

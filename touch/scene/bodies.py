@@ -56,12 +56,15 @@ class ThermalBody:
     None for that of the air. elements: sensor elements that are glued on it, on an object that is one box; they start
     as warm as it. contents: what keeps it hot or cold from inside, thermal.water or another Reservoir, None for
     nothing; they wet the walls of the hollow of a mesh or of several geoms, and meet any other object at its mean
-    temperature."""
+    temperature. shape: the name of a geom of the same body that is shaped as the object is, such as the mesh to be seen
+    of one that collides as convex pieces; whatever touches the pieces is felt on it, and its heat flows in it. None for
+    the geoms that collide."""
 
     material: str | Material
     temperature: float | None = None
     elements: Sequence[SensorElement] = ()
     contents: Reservoir | None = None
+    shape: str | None = None
 
     def __post_init__(self) -> None:
         if self.temperature is not None:
@@ -83,9 +86,11 @@ class ThermalBody:
 class BodyShape:
     """An object of a model, and the box that its heat flows in.
 
-    name: as it was asked for. body: number of the MuJoCo body. geoms: their numbers. material. temperature: °C. size
-    (3,) m of the box, centre (3,) m and axes (3, 3), its sides' directions in columns, in the body's frame. extent
-    (3,) m: the object's true size along them. surface: m2 that the air touches. elements: glued on it. contents: in it.
+    name: as it was asked for. body: number of the MuJoCo body. geoms: the numbers of those that are felt. material.
+    temperature: °C. size (3,) m of the box, centre (3,) m and axes (3, 3), its sides' directions in columns, in the
+    body's frame. extent (3,) m: the object's true size along them. surface: m2 that the air touches. elements: glued on
+    it. contents: in it. pieces: other geoms, which are felt as the only one of `geoms`. told: the name of that one,
+    None where the object's own geoms are felt.
 
     A box stands as it is; a round or composed object is a box of its volume and proportions. solid: what heat flows in
     instead (own_shape.py), a body of that material in the box's frame, which is as large as it."""
@@ -102,7 +107,14 @@ class BodyShape:
     surface: float
     elements: tuple[SensorElement, ...] = ()
     contents: Reservoir | None = None
+    pieces: tuple[int, ...] = ()
+    told: str | None = None
     solid: Solid | None = None
+
+    @property
+    def touched(self) -> tuple[int, ...]:
+        """The numbers of all geoms whose contacts are this object's; those that are felt come last."""
+        return (*self.pieces, *self.geoms)
 
     @property
     def heat_capacity(self) -> float:
@@ -144,10 +156,11 @@ def bodies(model: mujoco.MjModel, objects: Objects | None, ambient: float) -> tu
     found = [_body(model, name, one, ambient) for name, one in wanted.items()]
     owner: dict[int, str] = {}
     for shape in found:
-        if not any(collides(model, geom) for geom in shape.geoms):  # it may be one that is hidden for now
+        if not any(collides(model, geom) for geom in shape.touched):  # it may be one that is hidden for now
             warnings.warn(
                 f"object {shape.name!r}: {geom_label(model, shape.geoms[0])} is only seen and never touched (its "
-                "contype and conaffinity are 0): name the geom that collides, or its body",
+                "contype and conaffinity are 0): name the geom that collides, or its body, with this one as the "
+                "ThermalBody's shape if it is what the object looks like",
                 RuntimeWarning,
                 stacklevel=3,
             )
@@ -160,7 +173,7 @@ def bodies(model: mujoco.MjModel, objects: Objects | None, ambient: float) -> tu
                     RuntimeWarning,
                     stacklevel=3,
                 )
-        for geom in shape.geoms:
+        for geom in shape.touched:
             if owner.setdefault(geom, shape.name) != shape.name:
                 raise InvalidValueError(
                     f"objects {owner[geom]!r} and {shape.name!r} share geom {geom_label(model, geom)}: name it once"
@@ -223,6 +236,11 @@ def materials_by_world(
                 f"object {name!r}: its contents must be the same in every world and after every reset, those that the "
                 "ThermalTouch was made with"
             )
+        if any(body.shape not in (None, known[name].told) for body in bodies_):
+            raise InvalidValueError(
+                f"object {name!r}: its shape must be the same in every world and after every reset, that which the "
+                "ThermalTouch was made with"
+            )
         materials[name] = [named_material(body.material) for body in bodies_]
         first = [ambient if body.temperature is None else float(body.temperature) for body in bodies_]
         temperatures[name] = np.array(first)
@@ -271,11 +289,12 @@ def _body(model: mujoco.MjModel, name: str, described: BodyMaterial, ambient: fl
         raise InvalidValueError(
             f"object {name!r} has no geom, so there is nothing to touch: name another body"
         )
-    size, centre, axes, extent, surface = _box(model, name, geoms)
+    felt = geoms if body.shape is None else (_told(model, name, body.shape, geoms),)
+    size, centre, axes, extent, surface = _box(model, name, felt)
     return BodyShape(
         name,
         int(model.geom_bodyid[geoms[0]]),
-        geoms,
+        felt,
         named_material(body.material),
         ambient if body.temperature is None else float(body.temperature),
         size,
@@ -285,7 +304,21 @@ def _body(model: mujoco.MjModel, name: str, described: BodyMaterial, ambient: fl
         surface,
         tuple(body.elements),
         body.contents,
+        tuple(geom for geom in geoms if geom not in felt),
+        body.shape,
     )
+
+
+def _told(model: mujoco.MjModel, name: str, shape: str, geoms: tuple[int, ...]) -> int:
+    """The geom that tells an object's shape."""
+    _, geom = find(model, shape, ("geom",), f"shape of object {name!r}")
+    body, own = (int(model.geom_bodyid[each]) for each in (geom, geoms[0]))
+    if body != own:
+        raise InvalidValueError(
+            f"object {name!r}: geom {shape!r} is of body {model.body(body).name!r}, and a shape must be of the "
+            f"object's own body, {model.body(own).name!r}"
+        )
+    return geom
 
 
 def _box(

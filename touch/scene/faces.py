@@ -60,18 +60,26 @@ def mesh_of(model: mujoco.MjModel, geom: int) -> tuple[np.ndarray, np.ndarray]:
     return vertices, model.mesh_face[first : first + count].astype(np.int64)
 
 
-def _hull(model: mujoco.MjModel, geom: int) -> np.ndarray:
-    """(n, 3, 3) m: triangles of a mesh geom's convex hull, outwards, in its frame; of the mesh where the model has no
-    hull of it. MuJoCo has contacts with the hull."""
-    vertices, faces = mesh_of(model, geom)
+def hull_of(model: mujoco.MjModel, geom: int) -> np.ndarray:
+    """(n, 3) numbers of a mesh geom's vertices, the triangles of its convex hull, with which MuJoCo has contacts. The
+    model has none of a mesh that is only seen."""
     first = int(model.mesh_graphadr[model.geom_dataid[geom]])
     if first >= 0:
         points, count = (int(n) for n in model.mesh_graph[first : first + 2])
         first += 2 + 3 * points + 3 * count  # after the graph's addresses, points and edges
-        faces = model.mesh_graph[first : first + 3 * count].reshape(-1, 3)
-    found = vertices[faces]
-    if first < 0:
-        return found
+        return model.mesh_graph[first : first + 3 * count].reshape(-1, 3).astype(np.int64)
+    from scipy.spatial import ConvexHull, QhullError  # which nothing else here needs
+
+    vertices, faces = mesh_of(model, geom)
+    try:
+        return ConvexHull(vertices).simplices.astype(np.int64)
+    except QhullError:  # it is flat
+        return faces
+
+
+def _hull(model: mujoco.MjModel, geom: int) -> np.ndarray:
+    """(n, 3, 3) m: triangles of a mesh geom's convex hull, outwards, in its frame."""
+    found = mesh_of(model, geom)[0][hull_of(model, geom)]
     normals = np.cross(found[:, 1] - found[:, 0], found[:, 2] - found[:, 0])
     inwards = np.einsum("ij,ij->i", normals, found.mean(axis=1) - found.mean(axis=(0, 1))) < 0
     return np.where(inwards[:, None, None], found[:, ::-1], found)

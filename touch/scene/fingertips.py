@@ -103,6 +103,11 @@ class PadPlace:
     surround: Surround | None = None
 
     @property
+    def touched(self) -> tuple[int, ...]:
+        """The geoms whose contacts are its."""
+        return self.geoms
+
+    @property
     def face(self) -> Surface:
         """What touches."""
         return touching(self.skin)

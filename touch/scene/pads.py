@@ -112,7 +112,7 @@ def _require_different_geoms(
                 )
             owner[geom] = label
     for shape in objects:
-        for geom in shape.geoms:
+        for geom in shape.touched:
             if geom in owner:
                 raise InvalidValueError(
                     f"geom {geom_label(model, geom)} is fingertip {owner[geom]!r} and part of object {shape.name!r}: "
@@ -146,7 +146,7 @@ def _objects(
     found = []
     for shape in objects:
         nearest = min(
-            (_gap(model, data, *pair) for pair in product(geoms, shape.geoms)), key=lambda gap: gap[0]
+            (_gap(model, data, *pair) for pair in product(geoms, shape.touched)), key=lambda gap: gap[0]
         )
         centre = data.xpos[shape.body] + data.xmat[shape.body].reshape(3, 3) @ shape.centre
         found.append((nearest[0], [middle + nearest[1], centre]))

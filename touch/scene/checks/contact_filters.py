@@ -40,7 +40,7 @@ def warn_of_contact_filters(
     object nor another fingertip, by the model's filters of contacts."""
     untouched = set()
     for shape in shapes:
-        if not any(collides(model, geom) for geom in shape.geoms):
+        if not any(collides(model, geom) for geom in shape.touched):
             continue  # `bodies` tells
         why = [_filter_between(model, pad, shape) for pad in pads]
         if all(why):
@@ -64,7 +64,7 @@ def _filter_between(model: mujoco.MjModel, one: PadPlace, other: PadPlace | Body
             return _NONE.format(name)
     if all(model.body_treeid[each.body] < 0 for each in (one, other)):
         return _STILL
-    pairs = list(product(one.geoms, other.geoms))
+    pairs = list(product(one.touched, other.touched))
     listed = {
         frozenset(pair) for pair in zip(model.pair_geom1.tolist(), model.pair_geom2.tolist(), strict=True)
     }

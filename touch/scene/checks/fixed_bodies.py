@@ -26,7 +26,7 @@ def warn_of_fixed_bodies(
 ) -> None:
     """Warns the caller's caller of geoms that are fixed to a fingertip or an object which was named by its body, and
     that collide, but are nobody's: nothing is felt there."""
-    owned = {geom for one in (*pads, *shapes) for geom in one.geoms}
+    owned = {geom for one in (*pads, *shapes) for geom in one.touched}
     named = []
     for pad in pads:
         given = fingertips[pad.label]

@@ -26,7 +26,7 @@ def refuse_overlap(
     for pad in pads:
         middle = data.xpos[pad.body] + data.xmat[pad.body].reshape(3, 3) @ pad.position
         for shape in shapes:
-            for geom in shape.geoms:
+            for geom in shape.touched:
                 turn = data.geom_xmat[geom].reshape(3, 3)
                 depth = _depth(model, geom, turn.T @ (middle - data.geom_xpos[geom]))
                 if depth > DEEPEST:
