@@ -1,15 +1,17 @@
-"""The drop of a bare sensor on a ball or a cylinder whose contact conducts place by place, beside the even patch that
-stands for it.
+"""The drop of a sensor on a ball or a cylinder whose contact conducts place by place, beside the even patch that stands
+for it.
 
 Finite volumes about an axis: sensor and plate as discs of equal areas, the plate of the ball's thickness and volume as
 in the environments. Where the ball touches, rough faces conduct at Hertz's mean pressure; beside it gas, in Hertz's own
-gap. Heat is constricted by itself: the cells are a sixth of the contact's radius in the middle. The other run is of the
-same grid with one conductance over a disc of `even_patch`'s area, whose product is `conduction`'s. Of a cylinder that
-lies across the whole face all is the same in a plane, without what flows along it.
+gap. Heat is constricted by itself: the cells are an eighth of the contact's radius at its edge. Under a skin springs
+press, the most in the middle, and beside what touches the gap is the body's own. The other run is of the same grid with
+one conductance over a disc of `even_patch`'s area, whose product is `conduction`'s. Of a cylinder that lies across the
+whole face all is the same in a plane, without what flows along it.
 
     python studies/contact/curved_patch.py                  steel, copper, glass, plastic and wood
     python studies/contact/curved_patch.py glass --json
     python studies/contact/curved_patch.py abs wood cork --cylinders
+    python studies/contact/curved_patch.py glass wood --skin filled_silicone
 """
 
 from __future__ import annotations
@@ -24,13 +26,16 @@ from scipy.sparse import coo_matrix, csr_matrix, diags
 from scipy.sparse.linalg import splu
 
 from thermograsp.thermal import Layer, Pad, Surface, material, sensor
-from thermograsp.thermal.contact import bare_footprint, conductance, conduction, even_patch, footprint
+from thermograsp.thermal.contact import conductance, conduction, even_patch, footprint, round_footprint
+from thermograsp.thermal.matter import skin as dressed
 
 TIMES = np.array([0.5, 1.0, 2.0, 4.0])
 CASES = ((0.02, 10.0), (0.02, 1.0), (0.005, 10.0), (0.05, 10.0))
 """(radius m, force N)"""
 CYLINDERS = ((0.02, 0.05), (0.02, 1.0), (0.02, 5.0), (0.02, 20.0), (0.02, 60.0))
 DIFFERENCE = 12.0  # K
+CELLS = 8
+"""Along half the contact's width, and through a skin."""
 _GAMMA = 1 - 1 / np.sqrt(2)
 _STEPS = ((1e-4, 10), (1e-3, 9), (1e-2, 9), (0.05, 18), (0.1, 31))  # s, how many
 _MIDDLE = np.zeros(3)
@@ -131,34 +136,40 @@ def _drop(tip: Disc, sensed: int, state: np.ndarray) -> float:
     return at(int(layer[-1])) - at(int(layer[0]) - 1)
 
 
-def compared(name: str, radius: float, force: float, cylinder: bool = False) -> dict[str, object]:
+def compared(
+    name: str, radius: float, force: float, cylinder: bool = False, worn: str | None = None
+) -> dict[str, object]:
     """Of a ball, or of a cylinder across the face: W/K and drops K at TIMES, place by place and of an even patch, whose
-    area is in m2."""
+    area is in m2. worn: a skin's name, None for a bare face."""
     made, stack = material(name), sensor("seed")
     surface, width = Surface.of(made), stack.width
-    law = bare_footprint(Pad(), surface, radius, _LONG if cylinder else None)
+    skin = None if worn is None else dressed(worn)
+    law = round_footprint(Pad(), skin, surface, radius, _LONG if cylinder else None)
     area, load = footprint(law, force, _MIDDLE)
-    patch, total = even_patch(law, made, force), conduction(law, force, _MIDDLE)[1]
+    patch, total = even_patch(law, made, force, skin), conduction(law, force, _MIDDLE)[1]
     length = width if cylinder else None
     touched, covers, reach = area / (2 * width), patch / (2 * width), width / 2
     volume = np.pi * radius**2 / (2 * radius) / 2
     if not cylinder:
         touched, covers, reach = np.sqrt(area / np.pi), np.sqrt(patch / np.pi), width / np.sqrt(np.pi)
         volume = np.sqrt(4 / 3 * np.pi * radius**3 / (2 * radius) / np.pi)
-    fine = min(touched / 6, 1e-4)
-    rings = edges([0.0, touched, reach], [touched / 6, touched / 6, 1e-4], 1.15, 3e-4)
+    fine = touched / CELLS
+    ends = [each for each in np.unique(np.round([touched, covers], 9)) if each < reach]  # within one cell each
+    rings = edges([0.0, *ends, reach], [fine] * (1 + len(ends)) + [1e-4], 1.15, 3e-4)
     beyond = edges([reach, max(volume, 1.0001 * reach)], [1e-4, 1e-3], 1.2, 2e-3)
-    layers = stack.layers[::-1]
-    tip = Disc(rings, layers, [touched / 6, *[3e-5] * len(layers)], 2e-4, length)
+    layers = [*([] if skin is None else [skin.layer]), *stack.layers[::-1]]
+    first = [fine] if skin is None else [min(fine, skin.thickness / CELLS)] * 2
+    tip = Disc(rings, layers, [*first, *[3e-5] * (len(layers) + 1 - len(first))], 2e-4, length)
     wide = np.unique(np.concatenate((rings, beyond)))
-    body = Disc(wide, [made.layer(2 * radius)], [fine if cylinder else touched / 6, 1e-3], 1e-3, length)
+    body = Disc(wide, [made.layer(2 * radius)], [min(fine, 1e-4) if cylinder else fine, 1e-3], 1e-3, length)
     at = (rings[1:] + rings[:-1]) / 2
-    gap = gap_beside(np.maximum(at / touched, 1.0), cylinder) * touched**2 / radius
-    beside = np.where(at < radius, float(law["gas"]) / (float(law["mean_gap"]) + gap), 0.0)
-    placed = np.where(at < touched, conductance(law, load / area), beside)
-    covered = np.clip((covers - rings[:-1]) / np.diff(rings), 0.0, 1.0)
-    if not cylinder:
-        covered = np.clip((covers**2 - rings[:-1] ** 2) / np.diff(rings**2), 0.0, 1.0)
+    gap, beside = np.zeros(len(at)), at > touched
+    gap[beside] = gap_beside(at[beside] / touched, cylinder, worn is None) * touched**2 / radius
+    placed = np.where(at < radius, float(law["gas"]) / (float(law["mean_gap"]) + gap), 0.0)
+    even = 1.0 if worn is None else (1.5 if cylinder else 2.0) * (1 - (at[~beside] / touched) ** 2)
+    pressure = load / area * even * np.ones(len(at[~beside]))
+    placed[~beside] = [conductance(law, each) for each in pressure]
+    covered = at < covers
     sensed = len(layers) - 1 - stack.sensed
     return {
         "material": name,
@@ -171,9 +182,12 @@ def compared(name: str, radius: float, force: float, cylinder: bool = False) -> 
     }
 
 
-def gap_beside(x: np.ndarray, cylinder: bool) -> np.ndarray:
-    """Hertz's gap beside a contact, over its half width's square and the radius; x: of places, over its half width, 1
-    or more (Johnson, Contact Mechanics, sections 3.4 and 4.2)."""
+def gap_beside(x: np.ndarray, cylinder: bool, rigid: bool = True) -> np.ndarray:
+    """The gap beside a contact, over its half width's square and the radius: Hertz's where both are rigid but for the
+    contact, the body's own beside springs; x: of places, over its half width, 1 or more (Johnson, Contact Mechanics,
+    sections 3.4, 4.2 and 4.3)."""
+    if not rigid:
+        return (x * x - 1) / 2
     root = np.sqrt(x * x - 1)
     if cylinder:
         return (x * root - np.log(x + root)) / 2
@@ -189,9 +203,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "--cylinders", action="store_true", help="cylinders that lie across the face, at more forces"
     )
     parser.add_argument("--json", action="store_true", help="print one JSON object")
+    parser.add_argument("--skin", help="that the sensor wears: such as filled_silicone")
     options = parser.parse_args(arguments)
     cases = CYLINDERS if options.cylinders else CASES
-    rows = [compared(name, *case, options.cylinders) for name in options.materials for case in cases]
+    rows = [
+        compared(name, *case, options.cylinders, options.skin) for name in options.materials for case in cases
+    ]
     if options.json:
         json.dump(rows, sys.stdout, indent=1)
         return 0

@@ -71,7 +71,7 @@ from .rough_faces import (
     typical_slope,
 )
 from .round_bodies import disc_on_face
-from .spread import beneath, even_patch, narrowing, resistivity, two_flows, widened
+from .spread import Beneath, beneath, even_patch, narrowing, two_flows, widened
 
 __all__ = [
     "AIR",
@@ -94,6 +94,7 @@ __all__ = [
     "TABLE_FORCES",
     "THERMOSTAT_FACE",
     "ArrayLaws",
+    "Beneath",
     "ContactArea",
     "Gas",
     "Joint",
@@ -147,7 +148,6 @@ __all__ = [
     "patch_offset",
     "rigid_cylinder",
     "rigid_sphere",
-    "resistivity",
     "round_footprint",
     "skinned",
     "solid_conduction",

@@ -26,11 +26,10 @@ from thermograsp.compiled import njit
 from ..matter import Material, Skin
 from ..numerics import Array, as_integers, namespace_of
 from .area import Pad
-from .fingertip import touching
 from .law import CYLINDER, round_footprint
 from .patch_place import patch_ends, patch_offset
 from .rough_faces import Surface
-from .spread import beneath, patches, resistivity
+from .spread import beneath, patches
 
 FORCES, PLACES = 14, 24
 FIRST_FORCE, FORCE_STEP = math.log(0.02), math.log(2.2)
@@ -57,8 +56,7 @@ def curved_table(
 ) -> np.ndarray:
     """(CURVED_TABLE,) of a fingertip on a ball of that radius m, or on a cylinder of that length m. pad: its silicone;
     skin: over it, None for a bare face, which is rigid. Raises InvalidValueError for sizes that are none."""
-    surface, face = Surface.of(body), touching(skin)
-    law = round_footprint(pad, skin, surface, radius, length)
+    law = round_footprint(pad, skin, Surface.of(body), radius, length)
     aside, along = curved_places(pad, length)
     table = np.empty(CURVED_TABLE)
     table[:PLACES], table[PLACES : 2 * PLACES] = aside, along
@@ -66,8 +64,7 @@ def curved_table(
     _fill(
         law,
         pad.sensor_width,
-        beneath(body, face),
-        resistivity(body, face),
+        beneath(body, skin),
         np.exp(FIRST_FORCE + FORCE_STEP * np.arange(FORCES)),
         aside,
         along,
@@ -188,18 +185,16 @@ def even_places(first: float, last: float, edges: Iterable[float], count: int = 
 
 
 @njit(cache=True, error_model="numpy")
-def _fill(law, width, resistance, series, forces, aside, along, values, shares):
-    """Fills values and shares, as table_values tells them. width: m of the sensor's face. resistance, series: m2 K/W
-    and m K/W of both bodies, as patches takes them."""
+def _fill(law, width, below, forces, aside, along, values, shares):
+    """Fills values and shares, as table_values tells them. width: m of the sensor's face. below: as
+    patches takes it."""
     place = np.zeros(3)
     for i in range(len(aside)):
         for j in range(len(along)):
             place[1], place[2] = aside[i], along[j]
             for k in range(len(forces)):
                 at = values[k, i, j]
-                at[_CONTACT], at[_GAS], at[_PATCH], at[_WIDE], area = patches(
-                    law, resistance, series, forces[k], place
-                )
+                at[_CONTACT], at[_GAS], at[_PATCH], at[_WIDE], area = patches(law, below, forces[k], place)
                 at[_LONG], at[_LONGER], long = math.sqrt(at[_PATCH]), math.sqrt(at[_WIDE]), math.sqrt(area)
                 beside = along[j]
                 if law.shape == CYLINDER:

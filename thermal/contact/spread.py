@@ -1,4 +1,4 @@
-"""How large a patch of even conductance stands for a curved body on a bare face.
+"""How large a patch of even conductance stands for a curved body on a sensor's face.
 
 Beside the contact gas conducts k/(d + r^2/(2 R)): as well as between lapped faces in the middle, and out at the face's
 edge a hundredth of it. A network has one patch of one conductance. With g the conductance of the gas over the whole
@@ -16,25 +16,37 @@ place (studies/contact/curved_patch.py), balls of 5, 20 and 50 mm of five materi
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from thermograsp.compiled import njit
 
-from ..matter import Material
+from ..matter import Material, Skin
 from .footprint import beside, solid_conduction, touched
 from .law import CYLINDER
 from .rough_faces import LAPPED_ALUMINA, Surface
 
 _DEEPEST, _SECONDS = 0.8e-3, 1.0  # m, s, see above
 _MOST_NARROWED, _EVENED = 0.56, 1 / 3  # see narrowing
+_HALVINGS = 30  # of an interval of areas
 _FEW = 1e-6  # of what both conduct: less is no contact
 _MIDDLE = np.zeros(3)
 
 
-def even_patch(law: np.void, body: Material, force: float, face: Surface = LAPPED_ALUMINA) -> float:
-    """m2, of a bare_footprint of the body at a force N > 0 on the pad, over the face's middle."""
-    return float(patches(law, beneath(body, face), resistivity(body, face), force, _MIDDLE)[4])
+class Beneath(NamedTuple):
+    """What heat meets on both sides of a contact. straight: m2 K/W of both bodies, as deep as it comes. series: m K/W,
+    the reciprocal of their conductivities in series, between which it spreads. sheet: m2 K/W of a skin, which is
+    too thin for heat to spread in it."""
+
+    straight: float
+    series: float
+    sheet: float
+
+
+def even_patch(law: np.void, body: Material, force: float, skin: Skin | None = None) -> float:
+    """m2, of a round_footprint of the body at a force N > 0 on the pad, over the face's middle."""
+    return float(patches(law, beneath(body, skin), force, _MIDDLE)[4])
 
 
 def narrowing(body: Surface, face: Surface = LAPPED_ALUMINA) -> float:
@@ -47,27 +59,23 @@ def narrowing(body: Surface, face: Surface = LAPPED_ALUMINA) -> float:
     return _MOST_NARROWED / (1 + _EVENED * face.conductivity / body.conductivity)
 
 
-def beneath(body: Material, face: Surface) -> float:
-    """m2 K/W, the resistance of both bodies: what both_contacts takes."""
+def beneath(body: Material, skin: Skin | None = None) -> Beneath:
+    """Of a body under a sensor's face, which wears that skin or is bare."""
     depth = min(float(np.sqrt(body.diffusivity * _SECONDS)), _DEEPEST)
-    return depth * (1 / face.conductivity + 1 / body.conductivity)
-
-
-def resistivity(body: Material, face: Surface = LAPPED_ALUMINA) -> float:
-    """m K/W, the reciprocal of both bodies' conductivities in series."""
-    return 1 / face.conductivity + 1 / body.conductivity
+    series = 1 / LAPPED_ALUMINA.conductivity + 1 / body.conductivity
+    return Beneath(depth * series, series, 0.0 if skin is None else skin.resistance)
 
 
 @njit(cache=True, error_model="numpy")
-def patches(law, resistance, series, force, place):
+def patches(law, below, force, place):
     """(W/K of the contact, W/K of the gas, m2 of their two patches, m2 of the one that stands for both) at a force
-    N > 0 on the pad. resistance: of beneath; series: of resistivity."""
-    contact, gas, area, wide, whole = both_contacts(law, resistance, force, place)
+    N > 0 on the pad. below: of beneath."""
+    contact, gas, area, wide, whole = both_contacts(law, below, force, place)
     total = contact + gas
     if total <= 0.0:
         return contact, gas, area, wide, area
     even = (contact * area + gas * wide) / total
-    if contact < _FEW * total or gas <= 0.0 or law.constriction > 0.0 or law.modulus <= 0.0:
+    if contact < _FEW * total or gas <= 0.0 or law.constriction > 0.0:
         return contact, gas, area, wide, even
     along = 0.0
     if law.shape == CYLINDER:
@@ -75,7 +83,7 @@ def patches(law, resistance, series, force, place):
             min(law.half_face, law.length / 2 - place[2]) - max(-law.half_face, -law.length / 2 - place[2]),
             0.0,
         )
-    least = two_flows(contact, gas, area, whole, resistance, series, along)
+    least = two_flows(contact, gas, area, wide, whole, below, along)
     if least <= even:
         return contact, gas, area, wide, even
     area, wide = widened(contact, gas, area, whole, least)
@@ -93,36 +101,49 @@ def widened(contact, gas, area, whole, patch):
 
 
 @njit(cache=True, error_model="numpy")
-def two_flows(contact, gas, area, whole, resistance, series, along):
-    """m2 of a patch that resists as much as two flows side by side do: one even over `whole` m2, through the gas, and
-    one over the contact's m2. along: m, the contact's length, 0 for a disc. The rest as in patches.
+def two_flows(contact, gas, area, wide, whole, below, along):
+    """m2 of a patch that resists as much as two flows side by side do: an even one through the gas, over `whole` m2
+    along a line and over its own patch, `wide` m2, around a spot, and one over the contact's m2. along: m, the line's
+    length, 0 for a spot. The rest as in patches.
 
-    A flow that may choose between more ways meets no more resistance (Thomson's principle), so that the patch is no
-    narrower than this. Where the contact conducts more than the bodies beneath it, the mean of the areas is: it let a
-    can of plastic take up half as much heat when it was pressed harder (studies/contact/curved_patch.py --cylinders).
-    Under a bare face alone: beneath a skin the bodies' resistance is not told well enough.
-    Heat that is drawn together from the whole meets the lesser of the resistance of straight flow and of spreading from
-    a strip in a channel, or from a disc."""
+    A flow that may choose between more ways meets no more resistance (Thomson's principle). Where the contact conducts
+    more than the bodies beneath it, or than a skin, the mean of the areas is narrower: it let a can of plastic take up
+    half as much heat when it was pressed harder, and a ball of glass half as much under a skin
+    (studies/contact/curved_patch.py, from which the width of the gas's flow is). Heat that is drawn together from the
+    whole meets the lesser of the resistance of straight flow and of spreading from a strip in a channel, or from a
+    disc."""
     if area <= 0.0 or area >= whole:
         return whole
-    spread = resistance * (1.0 / area - 1.0 / whole)
-    if along > 0.0:
-        spread = min(spread, -series / (math.pi * along) * math.log(math.sin(math.pi / 2 * area / whole)))
-    else:
-        spread = min(spread, series / 4 * (math.sqrt(math.pi / area) - math.sqrt(math.pi / whole)))
-    both = resistance / whole
-    narrow, wide = 1.0 / contact + both + spread, 1.0 / gas + both
-    more = (narrow * wide - both * both) / (narrow + wide - 2 * both) - 1.0 / (contact + gas) - both
+    both = (below.straight + below.sheet) / whole
+    narrow, broad = 1.0 / contact + both + _drawn_together(area, whole, below, along), 1.0 / gas + both
+    if along == 0.0:
+        broad += _drawn_together(min(wide, whole), whole, below, along)
+    more = (narrow * broad - both * both) / (narrow + broad - 2 * both) - 1.0 / (contact + gas) - both
     if more <= 0.0:
         return whole
-    straight = 1.0 / (1.0 / whole + more / resistance)
-    if along > 0.0:
-        return min(straight, whole * 2 / math.pi * math.asin(math.exp(-math.pi * along / series * more)))
-    return min(straight, math.pi / (4 / series * more + math.sqrt(math.pi / whole)) ** 2)
+    low, high = area, whole
+    for _ in range(_HALVINGS):
+        middle = (low + high) / 2
+        if _drawn_together(middle, whole, below, along) > more:
+            low = middle
+        else:
+            high = middle
+    return high
 
 
 @njit(cache=True, error_model="numpy")
-def both_contacts(law, resistance, force, place):
+def _drawn_together(area, whole, below, along):
+    """K/W by which a flow over so many m2 meets more resistance than one over the whole."""
+    narrower = 1.0 / area - 1.0 / whole
+    if along > 0.0:
+        spread = -below.series / (math.pi * along) * math.log(math.sin(math.pi / 2 * area / whole))
+    else:
+        spread = below.series / 4 * (math.sqrt(math.pi / area) - math.sqrt(math.pi / whole))
+    return min(spread, below.straight * narrower) + below.sheet * narrower
+
+
+@njit(cache=True, error_model="numpy")
+def both_contacts(law, below, force, place):
     """(W/K of the contact, W/K of the gas, m2 of their two patches, m2 of all the gas) at a force N > 0 on the pad; see
     footprint's conduction. The gas is as it would be without force under the contact too, where it is spread as wide as
     beside it if heat is constricted, and is so among all the gas."""
@@ -132,6 +153,7 @@ def both_contacts(law, resistance, force, place):
     if law.mean_gap <= 0.0:
         return total, 0.0, area, area, area
     if around > 0.0:
+        resistance = below.straight + below.sheet
         less = beside(law, law.mean_gap + law.gas * resistance, area, square, hertz, place)
         spread = max(4 * law.half_face * law.half_face - area, 0.0)
         if around > less:

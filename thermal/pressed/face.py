@@ -21,7 +21,17 @@ import numpy as np
 
 from thermograsp.compiled import njit
 
-from ..contact import FIRST_FORCE, FORCE_STEP, FORCES, Pad, conductance, constricted, two_flows, widened
+from ..contact import (
+    FIRST_FORCE,
+    FORCE_STEP,
+    FORCES,
+    Beneath,
+    Pad,
+    conductance,
+    constricted,
+    two_flows,
+    widened,
+)
 from .crown import CURVED, LINE, at_edge, compact, crown_at, hertz_contact
 from .height_map import HeightMap, map_heights
 from .lying import Moments, lie, mixed
@@ -62,17 +72,17 @@ def pressed(pad: Pad, ring: Ring | None, law: np.void, where: Seen) -> np.ndarra
     """(FORCES, rows, columns, 2): m2 that touch of the sensor's face, or of a ring around it, and their share of the
     force. pad: with its springs. law: of face_footprint; a bare face is rigid."""
     touched = where.room(2)
-    _press(*_arguments(pad, ring, law, where), (0.0, 0.0), touched)
+    _press(*_arguments(pad, ring, law, where), Beneath(0.0, 0.0, 0.0), touched)
     return touched
 
 
-def conducted(pad: Pad, law: np.void, resistance: float, series: float, where: Seen) -> np.ndarray:
+def conducted(pad: Pad, law: np.void, below: Beneath, where: Seen) -> np.ndarray:
     """(FORCES, rows, columns, 10) of the sensor's face: the shares by which what conducts lies at an end of the face
     along both axes, and of the mesh (thermal/contact/patch_place.py); m, how long the patches of the contact and of the
-    gas are along the second axis; W/K of both; m2 of the patches. pad, law: as pressed has them. resistance,
-    series: m2 K/W and m K/W of both bodies (thermal/contact/spread.py)."""
+    gas are along the second axis; W/K of both; m2 of the patches. pad, law: as pressed has them. below: of
+    both bodies."""
     found = where.room(10)
-    _press(*_arguments(pad, None, law, where), (resistance, series), found)
+    _press(*_arguments(pad, None, law, where), below, found)
     return found
 
 
@@ -98,7 +108,7 @@ def _arguments(pad: Pad, ring: Ring | None, law: np.void, where: Seen) -> tuple[
 @njit(cache=True, error_model="numpy", nogil=True)
 def _press(
     axes, corner, height, shares, pitch, begin, places, some, spans, face, sensor, of_face, points, areas, stiffness,
-    counted, span, loads, forces, near, soft, law, bodies, found,
+    counted, span, loads, forces, near, soft, law, below, found,
 ):  # fmt: skip
     """Fills found, of `pressed` or `conducted`. of_face: whether the face is looked at, or a ring. span: from which of
     the points up to which are on the face. loads: m3, forces N over the stiffness of springs around the face.
@@ -154,7 +164,7 @@ def _press(
                         load,
                         where,
                         law,
-                        bodies,
+                        below,
                         crown,
                         shape,
                         flat,
@@ -175,14 +185,14 @@ def _touches(near, count, cover, depth, span):
 
 
 @njit(cache=True, error_model="numpy")
-def _conduct(points, near, count, what, area, load, where, law, bodies, crown, shape, flat, row):
+def _conduct(points, near, count, what, area, load, where, law, below, crown, shape, flat, row):
     """Fills a row of `conducted`. near, count: the springs that touch. what: (n,) heights m, cover m2, slopes m; m, by
     which springs sink in; (C,) m2 of the contact at each point; (C,), room. where: what `lie` takes after the moments,
     without a least length. load: N on a rigid face and on one like the pad. crown, shape: of crown_at, within the
     roughness and without it. flat: the share of what the mesh covers of the face that touches. Heat is constricted here
     from the patch in whose gas it spreads to the contact: not where the two are one, under a flush face."""
     heights, cover, slopes, depth, touching, beside = what
-    resistance, series = bodies
+    resistance = below.straight + below.sheet
     face, found, rigid = where[-2], np.zeros(5), law.modulus > 0.0
     least, round, touches = 0.0, 0.0, _contact_moments(points, near, count, touching)
     gaps, free, given, of_line, long = heights, 1.0, 0.0, 0.0, 0.0
@@ -251,13 +261,24 @@ def _conduct(points, near, count, what, area, load, where, law, bodies, crown, s
     small = area
     if total > 0.0:
         patch = ((total - freely) * area + freely * wide) / total
-        # of a line, whose constriction is not told yet
-        apart = (1.0 - compact(round)) * (1.0 - min(curved, 1.0))
-        if rigid and gas > 0.0 and area > 0.0 and apart > 0.0 and total - freely > _FEW * total:
-            flows = two_flows(total - freely, freely, area, whole, resistance, series, min(long, face))
+        # on a rigid face of a line, since a spot's constriction is told
+        spot = compact(min(area / row[4] ** 2, row[4] ** 2 / area)) if area > 0.0 else 0.0
+        apart = (1.0 - compact(round)) * (1.0 - min(curved, 1.0)) if rigid else 1.0
+        if gas > 0.0 and area > 0.0 and apart > 0.0 and total - freely > _FEW * total:
+            both = total - freely, freely, area, wide, whole, below
+            if rigid:
+                flows = two_flows(*both, min(long, face))
+            else:
+                flows = spot * two_flows(*both, 0.0)
+                if spot < 1.0:
+                    flows += (1.0 - spot) * two_flows(*both, min(max(row[4], area / row[4]), face))
             if flows > patch:
                 patch += apart * (flows - patch)
                 small, wide = widened(total - freely, freely, area, whole, patch)
+                lie(mixed(touches, small / area, touches, 0.0), *where, least, found)
+                row[4] = found[4]
+                lie(mixed(around, wide / gas, around, 0.0), *where, least, found)
+                row[5] = found[4]
         one, other = solid / area if area > 0.0 else 0.0, 1.0 if gas > 0.0 else 0.0
         lie(mixed(touches, patch / total * one, around, patch / total * other), *where, least, found)
     row[:4] = found[:4]

@@ -34,10 +34,8 @@ from ..contact import (
     even_places,
     face_footprint,
     flat_law,
-    resistivity,
     skinned,
     table_values,
-    touching,
 )
 from ..matter import Material, Skin, material
 from .face import Seen, conducted, pressed
@@ -129,8 +127,7 @@ class PressedView:
         pad, law = self.pad, face_footprint(self.pad, skin, Surface.of(body))
         if skin is None:
             pad = bared(pad)
-        face = touching(skin)
-        return conducted(pad, law, beneath(body, face), resistivity(body, face), self._seen(some))
+        return conducted(pad, law, beneath(body, skin), self._seen(some))
 
     def _seen(self, some: tuple[tuple[int, int], tuple[int, int]]) -> Seen:
         return Seen(self.seen, self.begin, self.places, self.spans, np.array(some))
