@@ -192,8 +192,8 @@ entries += [meet_rows, field_kernel.tell_fields, field_kernel.tell_temperatures]
 def test_what_is_compiled_ahead_is_what_a_step_needs(
     tmp_path: Path, function: str, keywords: dict[str, Any], needed: str, steps: str
 ) -> None:
-    """The first step finds it, and senses the same bits as one that compiles all itself. steps: compiled by itself all
-    the same, what advances a step."""
+    """The first step finds it, and senses the same bits as with code that this run's own tests have compiled, or any
+    before. steps: compiled by itself all the same, what advances a step."""
     step = f"""
 import hashlib
 import gymnasium, numpy as np, thermograsp
@@ -212,11 +212,14 @@ missed = sum(sum(one.stats.cache_misses.values()) for one in ahead)
 print(missed, sum(step.stats.cache_misses.values()), total.hexdigest())
 """
     printed = []
-    for name, code in (
-        ("ahead", f"from thermograsp.envs.sensing import ahead; ahead.{function}()"),
-        ("none", ""),
+    for kept, code in (
+        (
+            {"NUMBA_CACHE_DIR": str(tmp_path)},
+            f"from thermograsp.envs.sensing import ahead; ahead.{function}()",
+        ),
+        ({}, ""),
     ):
-        environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / name), ALONE: "1"}
+        environment = {**os.environ, **kept, ALONE: "1"}
         subprocess.run([sys.executable, "-c", code], env=environment, check=True)
         done = subprocess.run(
             [sys.executable, "-c", step], env=environment, check=True, capture_output=True, text=True

@@ -164,14 +164,17 @@ class GraspBody:
     @cached_property
     def face_area(self) -> float:
         """m2 of the patch on the sensor's face; a curved object's is that of NOMINAL_FORCE, its middle before the
-        pad's. On a bare face it is wider than what touches: see even_patch. It is the square that impedes heat as the
+        pad's. It is wider than what touches: see even_patch. It is the square that impedes heat as the
         strip does that a cylinder touches, or the rectangle that stands for what a mesh does."""
         nominal = self._contact(self.pad, np.array(NOMINAL_FORCE), (0.0, 0.0))
         area = float(nominal.face)
-        if self._on_bare_face:
-            area = even_patch(self.law, self.touched, NOMINAL_FORCE)
+        if self.contact_shape in ("cylinder", "sphere"):
+            area = even_patch(self.law, self.touched, NOMINAL_FORCE, self.skin)
         if self._bare_mesh:
             area, _ = footprint(self.law, NOMINAL_FORCE, np.zeros(3))
+        elif self.closed_mesh is not None and self.skin is not None:
+            wider = self.closed_mesh.widened((0, 0, 0, 0, 0), self.skin, self.touched)
+            area *= float(np.interp(math.log(NOMINAL_FORCE), np.log(TABLE_FORCES), wider))
         if self.contact_shape == "mesh" and not area > 0:  # it may slip to where the sensor is
             area = float(nominal.pad)
         if not area > 0:
@@ -346,7 +349,8 @@ class GraspBody:
 
     def around_face(self, step: tuple[int, ...], rings: Sequence[Ring]) -> tuple[list[np.void], np.ndarray]:
         """By which laws rings of the pad around the sensor conduct to a mesh that has slipped and turned by a step, and
-        (9, 5) where the face's contact lies at TABLE_FORCES; AroundFace has its columns."""
+        (9, 6) where the face's contact lies at TABLE_FORCES; AroundFace has its columns, and the last one is how much
+        wider than what touches the patch is that stands for what conducts."""
         from .mesh_contact import around_face
 
         mesh = self.closed_mesh
@@ -362,14 +366,18 @@ class GraspBody:
             )
             for ring, each in zip(rings, closed.rings, strict=True)
         ]
-        lying = closed.lying
+        lying = closed.lying.copy()
         if bare is not None:  # the pads that align themselves are soft, and what they touch is broader
             lying = mesh.lying_at(step, self.skin, self.touched)
         elif any(step):
             lies, lay = (mesh.lying_at(each, self.skin, self.touched) for each in (step, (0, 0, 0, 0, 0)))
             lying = lying + lies - lay
             lying[:, 1:] = np.clip(lying[:, 1:], 0.0, 1.0)
-        return laws, lying
+        wider = np.ones(len(lying))
+        if self.skin is not None:
+            wider = mesh.widened(step, self.skin, self.touched)
+            lying[:, 0] = mesh.lying_at(step, self.skin, self.touched)[:, 0]  # of the patch
+        return laws, np.column_stack((lying, wider))
 
     @cached_property
     def heat_capacity(self) -> float:

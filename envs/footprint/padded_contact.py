@@ -45,7 +45,7 @@ _FIRST, _STEP = math.log(TABLE_FORCES[0]), math.log(TABLE_FORCES[1] / TABLE_FORC
 class PadContact(NamedTuple):
     """What touch_pads takes of an object. law: (1,) FOOTPRINT_LAW of the face, and beside: (1,) CONTACT_LAW of a flat
     object under the pad. tables: (1 + RINGS, CURVED_TABLE) of face and rings on a ball or a cylinder, none of others.
-    rings: (RINGS,) FOOTPRINT_LAW on a mesh, and lying: (9, 5) of it, see GraspBody.around_face. halves: (RINGS,) m,
+    rings: (RINGS,) FOOTPRINT_LAW on a mesh, and lying: (9, 6) of it, see GraspBody.around_face. halves: (RINGS,) m,
     half the rings' outer sides. Without a pad there are none of rings, and halves is empty."""
 
     law: np.ndarray
@@ -64,7 +64,7 @@ def pad_contact(body: GraspBody, step: tuple[int, ...] = (0, 0, 0, 0, 0)) -> Pad
     if body.surround is not None:
         made, sides = material(body.surround.material), ring_sides(body.stack.width, body.surround)
         rings = [Ring(made, *each) for each in pairwise((body.stack.width, *sides))]
-    tables, laws, lying = np.zeros((0, CURVED_TABLE)), np.zeros(RINGS, FOOTPRINT_LAW), np.zeros((9, 5))
+    tables, laws, lying = np.zeros((0, CURVED_TABLE)), np.zeros(RINGS, FOOTPRINT_LAW), np.zeros((9, 6))
     if body.contact_shape in ("cylinder", "sphere"):
         radius, length = body.spec.size[0] / 2, body.spec.size[2]
         of_body = PAD, body.skin, body.material, radius, length if body.contact_shape == "cylinder" else None
@@ -117,6 +117,7 @@ def touch_pads(law, beside, tables, rings, lying, halves, normal, place, touches
                     shares[side] = lying[k, 1 + side] + (step - k) * (
                         lying[k + 1, 1 + side] - lying[k, 1 + side]
                     )
+                area *= lying[k, 5] + (step - k) * (lying[k + 1, 5] - lying[k, 5])
                 long = (lying[k, 0] + (step - k) * (lying[k + 1, 0] - lying[k, 0])) * math.sqrt(area)
                 for ring in range(len(halves)):
                     areas[ring], load = footprint(rings[ring], force, at)

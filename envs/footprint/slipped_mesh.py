@@ -85,6 +85,14 @@ class ClosedMesh:
         through, area = (np.exp(np.interp(*_LOADS, np.log(np.maximum(column, _LEAST)))) for column in mean.T)
         return np.where(through > 2 * _LEAST, through, 0.0), np.where(area > 2 * _LEAST, area, 0.0)
 
+    def widened(self, step: tuple[int, ...], skin: Skin, body: Material) -> np.ndarray:
+        """(9,) at TABLE_FORCES: how much wider the patch that stands for what conducts is than what touches, of a face
+        with that skin on a mesh of that material. step: as contact_at's."""
+        patch = self._of_views(step, _Asked(body, skin, conducts=True))[:, 1]
+        touched = self._of_views(step, _TOUCHED)[:, 0]
+        wide, narrow = (np.interp(*_LOADS, column) for column in (patch, touched))
+        return np.where(narrow > 0, np.maximum(wide / np.where(narrow > 0, narrow, 1.0), 1.0), 1.0)
+
     def patch_length(self, skin: Skin | None, body: Material, force: float) -> float:
         """m, one side of the rectangle that stands for what conducts where the pads closed on a mesh of that material,
         at a force N on the pad; 0 where none touches."""

@@ -59,7 +59,7 @@ def advance_fields(sample, rows, contacts, force, place, drop, first):
                     laws(part[1], 1),
                     floats(part[2], (part[6], CURVED_TABLE)),
                     footprints(part[3], RINGS),
-                    floats(part[4], (9, 5)),
+                    floats(part[4], (9, 6)),
                     floats(part[5], part[7]),
                     force[b, o],
                     place[b, o],

@@ -154,7 +154,9 @@ def compared(
         touched, covers, reach = np.sqrt(area / np.pi), np.sqrt(patch / np.pi), width / np.sqrt(np.pi)
         volume = np.sqrt(4 / 3 * np.pi * radius**3 / (2 * radius) / np.pi)
     fine = touched / CELLS
-    ends = [each for each in np.unique(np.round([touched, covers], 9)) if each < reach]  # within one cell each
+    ends = [
+        each for each in np.unique(np.round([touched, covers], 9)) if each < reach
+    ]  # within one cell each
     rings = edges([0.0, *ends, reach], [fine] * (1 + len(ends)) + [1e-4], 1.15, 3e-4)
     beyond = edges([reach, max(volume, 1.0001 * reach)], [1e-4, 1e-3], 1.2, 2e-3)
     layers = [*([] if skin is None else [skin.layer]), *stack.layers[::-1]]

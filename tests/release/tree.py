@@ -27,7 +27,7 @@ def clone(folder: Path) -> Path:
 def clean_environment(home: Path) -> dict[str, str]:
     """Of a user who has just logged in, with an empty home: nothing of Python's, of make's or of ours is set. What pip
     has downloaded before, and where it downloads from, stays."""
-    ours = ("PYTHON", "MAKE", "MFLAGS", "VIRTUAL_ENV", "VENV", "THERMOGRASP", "MUJOCO_GL", "XDG_CACHE_HOME", "NUMBA")
+    ours = tuple("PYTHON MAKE MFLAGS VIRTUAL_ENV VENV THERMOGRASP MUJOCO_GL XDG_CACHE_HOME NUMBA".split())
     kept = {name: value for name, value in os.environ.items() if not name.startswith(ours)}
     kept.setdefault("PIP_CACHE_DIR", str(Path.home() / ".cache" / "pip"))
     config = Path.home() / ".config" / "pip" / "pip.conf"

@@ -81,16 +81,21 @@ def test_it_is_asked_for_what_will_hear(
 @pytest.mark.slow
 @pytest.mark.parametrize("function", list(READ))
 def test_what_is_compiled_ahead_is_what_a_first_touch_takes(tmp_path: Path, function: str) -> None:
-    """All of it, and the bits are those of a process that compiles all itself."""
+    """All of it, and the bits are those of code that this run's own tests have compiled, or any before."""
     if function == "compile_records_ahead" and not hasattr(mujoco.mjtSensor, "mjSENS_CONTACT"):
         pytest.skip("this MuJoCo has no contact sensors")
     told = {}
-    for folder, name, code in (("one", "ahead", AHEAD), ("one", "touch", FIRST), ("other", "alone", FIRST)):
+    ahead_of_it = {"NUMBA_CACHE_DIR": str(tmp_path)}
+    for kept, name, code in (
+        (ahead_of_it, "ahead", AHEAD),
+        (ahead_of_it, "touch", FIRST),
+        ({}, "alone", FIRST),
+    ):
         end = TELL if name != "alone" else ""
         end += "" if name == "ahead" else "print(total.hexdigest())\n"
         done = subprocess.run(
             [sys.executable, "-W", "ignore", "-c", TOUCH + code + end, function],
-            env={**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / folder), ALONE: "1"},
+            env={**os.environ, **kept, ALONE: "1"},
             check=True,
             capture_output=True,
             text=True,

@@ -71,7 +71,7 @@ from .rough_faces import (
     typical_slope,
 )
 from .round_bodies import disc_on_face
-from .spread import Beneath, beneath, even_patch, narrowing, two_flows, widened
+from .spread import Beneath, beneath, even_patch, flows_of_line, flows_of_spot, narrowing, widened
 
 __all__ = [
     "AIR",
@@ -135,6 +135,8 @@ __all__ = [
     "face_joint",
     "flat_contact",
     "flat_footprint",
+    "flows_of_line",
+    "flows_of_spot",
     "flat_law",
     "flat_patch",
     "footprint",
@@ -158,7 +160,6 @@ __all__ = [
     "table_footprint",
     "table_values",
     "touching",
-    "two_flows",
     "typical_slope",
     "widened",
 ]

@@ -8,9 +8,10 @@ face, W/K, and g' that of the same gas with 1/b = l (1/k + 1/k') of both bodies 
 
 and evenly g/A loses as much to the bodies' resistance as the gas does: little where b is large, so that the patch is
 wide under wood and narrow under copper. The contact itself is as large as it is, and the patch is the mean of both
-areas, weighted by what they conduct, or what two_flows finds, if that is wider. l is how deep heat has come into the
-body in a second, but 0.8 mm at most, since it spreads sideways by then: a fit to finite volumes of the contact place by
-place (studies/contact/curved_patch.py), balls of 5, 20 and 50 mm of five materials.
+areas, weighted by what they conduct, or what two flows side by side tell, if that is wider. l is how deep heat has come
+into the body in a second, but 0.8 mm at most, since it spreads sideways by then: a fit to finite volumes of the contact
+place by place (studies/contact/curved_patch.py), balls of 5, 20 and 50 mm of five materials. A skin's resistance is in
+b, too.
 """
 
 from __future__ import annotations
@@ -70,20 +71,19 @@ def beneath(body: Material, skin: Skin | None = None) -> Beneath:
 def patches(law, below, force, place):
     """(W/K of the contact, W/K of the gas, m2 of their two patches, m2 of the one that stands for both) at a force
     N > 0 on the pad. below: of beneath."""
-    contact, gas, area, wide, whole = both_contacts(law, below, force, place)
+    contact, gas, area, wide, whole, around = both_contacts(law, below, force, place)
     total = contact + gas
     if total <= 0.0:
         return contact, gas, area, wide, area
     even = (contact * area + gas * wide) / total
-    if contact < _FEW * total or gas <= 0.0 or law.constriction > 0.0:
+    if contact < _FEW * total or around <= 0.0 or law.constriction > 0.0:
         return contact, gas, area, wide, even
-    along = 0.0
     if law.shape == CYLINDER:
-        along = max(
-            min(law.half_face, law.length / 2 - place[2]) - max(-law.half_face, -law.length / 2 - place[2]),
-            0.0,
-        )
-    least = two_flows(contact, gas, area, wide, whole, below, along)
+        half, other = law.half_face, law.length / 2
+        along = max(min(half, other - place[2]) - max(-half, -other - place[2]), 0.0)
+        least = flows_of_line(contact, gas, area, whole, below, along)
+    else:
+        least = flows_of_spot(total - around, around, area, whole, below)
     if least <= even:
         return contact, gas, area, wide, even
     area, wide = widened(contact, gas, area, whole, least)
@@ -101,30 +101,49 @@ def widened(contact, gas, area, whole, patch):
 
 
 @njit(cache=True, error_model="numpy")
-def two_flows(contact, gas, area, wide, whole, below, along):
-    """m2 of a patch that resists as much as two flows side by side do: an even one through the gas, over `whole` m2
-    along a line and over its own patch, `wide` m2, around a spot, and one over the contact's m2. along: m, the line's
-    length, 0 for a spot. The rest as in patches.
+def flows_of_line(contact, gas, area, whole, below, along):
+    """m2 of a patch that resists as much as two flows side by side do: an even one through the gas over `whole` m2, and
+    one over the contact's m2. along: m, the contact's length, 0 of a disc. The rest as in patches.
 
     A flow that may choose between more ways meets no more resistance (Thomson's principle). Where the contact conducts
-    more than the bodies beneath it, or than a skin, the mean of the areas is narrower: it let a can of plastic take up
-    half as much heat when it was pressed harder, and a ball of glass half as much under a skin
-    (studies/contact/curved_patch.py, from which the width of the gas's flow is). Heat that is drawn together from the
-    whole meets the lesser of the resistance of straight flow and of spreading from a strip in a channel, or from a
-    disc."""
+    more than the bodies beneath it, or than a skin, the mean of the areas is narrower than this: it let a can of
+    plastic take up half as much heat when it was pressed harder (studies/contact/curved_patch.py --cylinders)."""
     if area <= 0.0 or area >= whole:
         return whole
     both = (below.straight + below.sheet) / whole
-    narrow, broad = 1.0 / contact + both + _drawn_together(area, whole, below, along), 1.0 / gas + both
-    if along == 0.0:
-        broad += _drawn_together(min(wide, whole), whole, below, along)
-    more = (narrow * broad - both * both) / (narrow + broad - 2 * both) - 1.0 / (contact + gas) - both
-    if more <= 0.0:
+    narrow, wide = 1.0 / contact + both + _drawn_together(area, whole, below, along), 1.0 / gas + both
+    resists = _beside_one_another(narrow, wide, both) - 1.0 / (contact + gas) - both
+    return _resisting(resists, area, whole, below, along)
+
+
+@njit(cache=True, error_model="numpy")
+def flows_of_spot(contact, gas, area, whole, below):
+    """The same where the contact is a disc and the gas conducts around it alone, both in W/K. In a skin the two flows
+    have nothing in common."""
+    if area <= 0.0 or area >= whole:
+        return whole
+    common = below.straight / whole
+    sheet, both = below.sheet / whole, (below.straight + below.sheet) / (whole - area)
+    narrow = 1.0 / contact + common + sheet + _drawn_together(area, whole, below, 0.0)
+    resists = _beside_one_another(narrow, 1.0 / gas + both, common) - 1.0 / (contact + gas) - common - sheet
+    return _resisting(resists, area, whole, below, 0.0)
+
+
+@njit(cache=True, error_model="numpy")
+def _beside_one_another(one, other, common):
+    """K/W of two flows, of which a part is common to both."""
+    return (one * other - common * common) / (one + other - 2 * common)
+
+
+@njit(cache=True, error_model="numpy")
+def _resisting(resists, area, whole, below, along):
+    """m2, at least the area's, whose flow resists by that many K/W more than one over the whole."""
+    if resists <= 0.0:
         return whole
     low, high = area, whole
     for _ in range(_HALVINGS):
         middle = (low + high) / 2
-        if _drawn_together(middle, whole, below, along) > more:
+        if _drawn_together(middle, whole, below, along) > resists:
             low = middle
         else:
             high = middle
@@ -133,7 +152,8 @@ def two_flows(contact, gas, area, wide, whole, below, along):
 
 @njit(cache=True, error_model="numpy")
 def _drawn_together(area, whole, below, along):
-    """K/W by which a flow over so many m2 meets more resistance than one over the whole."""
+    """K/W by which a flow over so many m2 meets more resistance than one over the whole: the lesser of straight flow's
+    and of what spreads from a strip in a channel, or from a disc; and what a skin resists."""
     narrower = 1.0 / area - 1.0 / whole
     if along > 0.0:
         spread = -below.series / (math.pi * along) * math.log(math.sin(math.pi / 2 * area / whole))
@@ -144,14 +164,14 @@ def _drawn_together(area, whole, below, along):
 
 @njit(cache=True, error_model="numpy")
 def both_contacts(law, below, force, place):
-    """(W/K of the contact, W/K of the gas, m2 of their two patches, m2 of all the gas) at a force N > 0 on the pad; see
-    footprint's conduction. The gas is as it would be without force under the contact too, where it is spread as wide as
-    beside it if heat is constricted, and is so among all the gas."""
+    """(W/K of the contact, W/K of the gas, m2 of their two patches, m2 of all the gas, W/K of the gas beside what
+    touches) at a force N > 0 on the pad; see footprint's conduction. The gas is as it would be without force under the
+    contact too, where it is spread as wide as beside it if heat is constricted, and is so among all the gas."""
     area, load, square, hertz = touched(law, force, place)
     around = beside(law, law.mean_gap, area, square, hertz, place)
     total, spread = solid_conduction(law, area, load) + around, 0.0
     if law.mean_gap <= 0.0:
-        return total, 0.0, area, area, area
+        return total, 0.0, area, area, area, 0.0
     if around > 0.0:
         resistance = below.straight + below.sheet
         less = beside(law, law.mean_gap + law.gas * resistance, area, square, hertz, place)
@@ -161,4 +181,4 @@ def both_contacts(law, below, force, place):
     gas, whole = min(around + law.gas / law.mean_gap * area, total), area + spread
     if law.constriction == 0.0 and gas > 0.0:
         spread *= around / gas
-    return total - gas, gas, area, area + spread, whole
+    return total - gas, gas, area, area + spread, whole, around

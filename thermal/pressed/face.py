@@ -29,7 +29,8 @@ from ..contact import (
     Pad,
     conductance,
     constricted,
-    two_flows,
+    flows_of_line,
+    flows_of_spot,
     widened,
 )
 from .crown import CURVED, LINE, at_edge, compact, crown_at, hertz_contact
@@ -50,6 +51,7 @@ from .springs import (
 )
 
 _FEW = 1e-6  # of what both conduct: less is no contact
+_SPOT = 2.0  # a contact under a skin is a line where it is as long as the face, and a spot up to half of that
 
 
 class Seen(NamedTuple):
@@ -262,16 +264,15 @@ def _conduct(points, near, count, what, area, load, where, law, below, crown, sh
     if total > 0.0:
         patch = ((total - freely) * area + freely * wide) / total
         # on a rigid face of a line, since a spot's constriction is told
-        spot = compact(min(area / row[4] ** 2, row[4] ** 2 / area)) if area > 0.0 else 0.0
         apart = (1.0 - compact(round)) * (1.0 - min(curved, 1.0)) if rigid else 1.0
         if gas > 0.0 and area > 0.0 and apart > 0.0 and total - freely > _FEW * total:
-            both = total - freely, freely, area, wide, whole, below
             if rigid:
-                flows = two_flows(*both, min(long, face))
+                flows = flows_of_line(total - freely, freely, area, whole, below, min(long, face))
             else:
-                flows = spot * two_flows(*both, 0.0)
-                if spot < 1.0:
-                    flows += (1.0 - spot) * two_flows(*both, min(max(row[4], area / row[4]), face))
+                long = min(max(row[4], area / row[4]), face)
+                spot = min(_SPOT * (1.0 - long / face), 1.0)
+                flows = (1.0 - spot) * flows_of_line(total - freely, freely, area, whole, below, long)
+                flows += spot * flows_of_spot(solid, gas, area, whole, below)
             if flows > patch:
                 patch += apart * (flows - patch)
                 small, wide = widened(total - freely, freely, area, whole, patch)

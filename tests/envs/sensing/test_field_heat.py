@@ -125,7 +125,7 @@ def test_at_any_force(force: float, surround: str | None) -> None:
 def test_a_pad_changes_the_drop_by_as_much_as_in_thermal_touch() -> None:
     """Where an environment without one has the same contact: on balls."""
     for name in ("aluminium", "glass"):
-        alone = GraspHeat(1, air=0.0, **SETTINGS)
+        alone = GraspHeat(1, air=0.0, **{**SETTINGS, "tolerance": 0.01})
         alone.reset([0], [body_of(name, BALL, surround=None)])
         without, expected = held(alone, BALL, 100)[0, -1, 0], touched(BALL, name, SKIN, None, 10.0)[-1]
         change = held(heat_of(body_of(name, BALL)), BALL, 100)[0, -1, 0] - without
