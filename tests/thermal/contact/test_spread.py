@@ -1,4 +1,4 @@
-"""The even patch that stands for a curved body on a bare face: limits, order, and drops beside finite volumes."""
+"""The even patch that stands for a curved body on a sensor's face: limits, order, and drops beside finite volumes."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from thermograsp.thermal import AIR, LAPPED_ALUMINA, Pad, Surface, material
-from thermograsp.thermal.contact import bare_footprint, beneath, conduction, even_patch
+from thermograsp.thermal.contact import bare_footprint, beneath, conduction, even_patch, round_footprint
+from thermograsp.thermal.matter import skin
 
 PAD, FACE = Pad(), Pad().face ** 2
 
@@ -77,3 +78,24 @@ def test_a_cylinder_that_is_pressed_harder_takes_up_no_less(name: str) -> None:
         conducts, area = conduction(law, force, np.zeros(3))[1], even_patch(law, body, force)
         resists.append(1 / conducts + beneath(body).straight / area)
     assert all(later < 1.02 * before for before, later in pairwise(resists)), resists
+
+
+@pytest.mark.parametrize("name", ["aluminium", "glass", "wood"])
+@pytest.mark.parametrize("length", [None, 0.08])
+def test_under_a_skin_it_is_wider_than_what_touches_and_more_force_is_no_less_heat(
+    name: str, length: float | None
+) -> None:
+    """A ball of glass was felt half as cold: heat had to go through the skin under the contact alone."""
+    body, worn, resists = material(name), skin("filled_silicone"), []
+    law = round_footprint(PAD, worn, Surface.of(body), 0.02, length)
+    below = beneath(body, worn)
+    for force in (0.05, 0.5, 5.0, 20.0, 60.0):
+        touched, conducts = conduction(law, force, np.zeros(3))
+        area = even_patch(law, body, force, worn)
+        assert touched < area <= FACE * (1 + 1e-9)
+        resists.append(1 / conducts + (below.straight + below.sheet) / area)
+    assert all(later < 1.02 * before for before, later in pairwise(resists)), resists
+    assert (
+        even_patch(law, body, 5.0, worn)
+        > (1.1 if name == "aluminium" else 1.5) * conduction(law, 5.0, np.zeros(3))[0]
+    )
