@@ -319,3 +319,14 @@ def test_a_normal_that_says_nothing_is_refused() -> None:
     )
     with pytest.raises(InvalidValueError, match="is a site, which looks along its x axis"):
         pads(mujoco.MjModel.from_xml_string(text), {"tip": Fingertip("s", normal=(0, 0, 1))}, ())
+
+
+@pytest.mark.parametrize("tip", ["sphere", "capsule", "cylinder", "box"])
+@pytest.mark.parametrize("kind", ["sphere", "capsule", "ellipsoid", "cylinder", "box"])
+def test_one_fingertip_looks_at_what_is_near_whatever_both_are(kind: str, tip: str) -> None:
+    """MuJoCo 3.3.0 tells the nearest points of a box and a cylinder the other way round."""
+    model = mujoco.MjModel.from_xml_string(f"""<mujoco><worldbody>
+        <body name="thing"><geom type="{kind}" size=".02 .02 .02"/></body>
+        <body name="tip" pos="0 0 -.0702"><geom type="{tip}" size=".01 .01 .01"/></body></worldbody></mujoco>""")
+    (pad,) = pads(model, {"tip": Fingertip("tip")}, bodies(model, {"thing": "steel"}, 24.0))
+    assert pad.axes[2, 0] > 0.99

@@ -155,6 +155,11 @@ def _objects(
 
 def _gap(model: mujoco.MjModel, data: mujoco.MjData, one: int, other: int) -> tuple[float, np.ndarray]:
     """m between two geoms, negative where they overlap, and (3,) m from one to the nearest place of the other."""
+    if (
+        model.geom_type[one] > model.geom_type[other]
+    ):  # else some versions from 3.3.0 on tell the ends the other way round
+        gap, along = _gap(model, data, other, one)
+        return gap, -along
     ends = np.zeros(6)
     gap = mujoco.mj_geomDistance(model, data, one, other, _FAR, ends)
     return gap, math.copysign(1.0, gap) * (ends[3:] - ends[:3])
