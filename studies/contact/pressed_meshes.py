@@ -3,7 +3,8 @@
 A steel mesh is pressed at FORCE_N on a fingertip that has the usual skin. The direct computation shares no code with
 the tables: each triangle's height at points of the pad, the depth at which the springs under them bear the force, and
 the contact law at the pressure of each point. Compared are the area on the sensor's face, the conductance, and the
-temperature drop that ThermalTouch's network has after TIME s with such a contact.
+temperature drop that ThermalTouch's network has after TIME s with such a contact. The direct computation has no gas
+beside what touches, which the tables have: curved_patch.py tells what that adds.
 
     python studies/contact/pressed_meshes.py                  every mesh, half a minute
     python studies/contact/pressed_meshes.py thread --json

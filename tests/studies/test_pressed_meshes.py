@@ -36,7 +36,9 @@ def test_point_by_point_a_rod_is_touched_as_the_closed_form_s_cylinder(study: Mo
     assert met.long == pytest.approx(study.PAD.face, rel=0.01)
 
 
-def test_a_table_makes_a_rod_as_cold_as_its_springs_point_by_point(study: ModuleType) -> None:
+def test_a_table_makes_a_rod_as_cold_as_its_springs_and_the_gas_beside_them(study: ModuleType) -> None:
+    """The springs have no gas beside what touches, through which a skin lets heat pass as well: by finite volumes
+    (studies/contact/curved_patch.py --skin) a tenth more on metals."""
     row = study.row("rod", 0.0, 0.0)
     assert row.drop[0] > 9.0
-    assert row.drop[1] == pytest.approx(row.drop[2], abs=0.2)
+    assert 0.0 < row.drop[1] - row.drop[2] < 0.13 * row.drop[2]
