@@ -30,6 +30,7 @@ def study() -> Iterator[ModuleType]:
         ("capsule", (5.5, 7.2, 9.8, 5.5, 7.1)),
         ("overlap", (9.9, 10.5, 10.5)),
         ("edge", (5.8, 7.4)),
+        ("swapped", (1.96, 1.63)),
     ],
 )
 def test_aluminium_is_felt_as_the_docs_have_it(

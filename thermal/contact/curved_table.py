@@ -186,8 +186,8 @@ def even_places(first: float, last: float, edges: Iterable[float], count: int = 
 
 @njit(cache=True, error_model="numpy")
 def _fill(law, width, below, forces, aside, along, values, shares):
-    """Fills values and shares, as table_values tells them. width: m of the sensor's face. below: as
-    patches takes it."""
+    """Fills values and shares, as table_values tells them. width: m of the sensor's face. below: as patches
+    takes it."""
     place = np.zeros(3)
     for i in range(len(aside)):
         for j in range(len(along)):

@@ -103,7 +103,7 @@ def widened(contact, gas, area, whole, patch):
 @njit(cache=True, error_model="numpy")
 def flows_of_line(contact, gas, area, whole, below, along):
     """m2 of a patch that resists as much as two flows side by side do: an even one through the gas over `whole` m2, and
-    one over the contact's m2. along: m, the contact's length, 0 of a disc. The rest as in patches.
+    one over the contact's m2. along: m, the contact's length. The rest as in patches.
 
     A flow that may choose between more ways meets no more resistance (Thomson's principle). Where the contact conducts
     more than the bodies beneath it, or than a skin, the mean of the areas is narrower than this: it let a can of

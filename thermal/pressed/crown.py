@@ -80,4 +80,5 @@ def hertz_contact(crown, load, long, modulus):
 
 @njit(cache=True, inner=True, error_model="numpy")
 def compact(round):
+    """0 of a line, 1 of what constricts heat as a disc. round: breadth over length."""
     return min(max((round - LINE) / (COMPACT - LINE), 0.0), 1.0)

@@ -89,8 +89,8 @@ class BodyShape:
     name: as it was asked for. body: number of the MuJoCo body. geoms: the numbers of those that are felt. material.
     temperature: °C. size (3,) m of the box, centre (3,) m and axes (3, 3), its sides' directions in columns, in the
     body's frame. extent (3,) m: the object's true size along them. surface: m2 that the air touches. elements: glued on
-    it. contents: in it. pieces: other geoms, which are felt as the only one of `geoms`. told: the name of that one,
-    None where the object's own geoms are felt.
+    it. contents: in it. pieces: other geoms, which are felt as the only one of `geoms`. shape_name: of
+    that one, None where the object's own geoms are felt.
 
     A box stands as it is; a round or composed object is a box of its volume and proportions. solid: what heat flows in
     instead (own_shape.py), a body of that material in the box's frame, which is as large as it."""
@@ -108,7 +108,7 @@ class BodyShape:
     elements: tuple[SensorElement, ...] = ()
     contents: Reservoir | None = None
     pieces: tuple[int, ...] = ()
-    told: str | None = None
+    shape_name: str | None = None
     solid: Solid | None = None
 
     @property
@@ -236,7 +236,7 @@ def materials_by_world(
                 f"object {name!r}: its contents must be the same in every world and after every reset, those that the "
                 "ThermalTouch was made with"
             )
-        if any(body.shape not in (None, known[name].told) for body in bodies_):
+        if any(body.shape not in (None, known[name].shape_name) for body in bodies_):
             raise InvalidValueError(
                 f"object {name!r}: its shape must be the same in every world and after every reset, that which the "
                 "ThermalTouch was made with"
@@ -289,12 +289,12 @@ def _body(model: mujoco.MjModel, name: str, described: BodyMaterial, ambient: fl
         raise InvalidValueError(
             f"object {name!r} has no geom, so there is nothing to touch: name another body"
         )
-    felt = geoms if body.shape is None else (_told(model, name, body.shape, geoms),)
-    size, centre, axes, extent, surface = _box(model, name, felt)
+    shaped = geoms if body.shape is None else (_shape_geom(model, name, body.shape, geoms),)
+    size, centre, axes, extent, surface = _box(model, name, shaped)
     return BodyShape(
         name,
         int(model.geom_bodyid[geoms[0]]),
-        felt,
+        shaped,
         named_material(body.material),
         ambient if body.temperature is None else float(body.temperature),
         size,
@@ -304,12 +304,12 @@ def _body(model: mujoco.MjModel, name: str, described: BodyMaterial, ambient: fl
         surface,
         tuple(body.elements),
         body.contents,
-        tuple(geom for geom in geoms if geom not in felt),
+        tuple(geom for geom in geoms if geom not in shaped),
         body.shape,
     )
 
 
-def _told(model: mujoco.MjModel, name: str, shape: str, geoms: tuple[int, ...]) -> int:
+def _shape_geom(model: mujoco.MjModel, name: str, shape: str, geoms: tuple[int, ...]) -> int:
     """The geom that tells an object's shape."""
     _, geom = find(model, shape, ("geom",), f"shape of object {name!r}")
     body, own = (int(model.geom_bodyid[each]) for each in (geom, geoms[0]))

@@ -155,9 +155,8 @@ def _objects(
 
 def _gap(model: mujoco.MjModel, data: mujoco.MjData, one: int, other: int) -> tuple[float, np.ndarray]:
     """m between two geoms, negative where they overlap, and (3,) m from one to the nearest place of the other."""
-    if (
-        model.geom_type[one] > model.geom_type[other]
-    ):  # else some versions from 3.3.0 on tell the ends the other way round
+    # in the other order MuJoCo 3.3.0 gives the ends of a box and a cylinder the other way round
+    if model.geom_type[one] > model.geom_type[other]:
         gap, along = _gap(model, data, other, one)
         return gap, -along
     ends = np.zeros(6)
