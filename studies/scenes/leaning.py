@@ -39,6 +39,7 @@ import mujoco
 import numpy as np
 
 from thermograsp import Fingertip, ThermalTouch
+from thermograsp.thermal.contact import beside_round, conductance
 from thermograsp.touch.contacts import AREA
 from thermograsp.touch.contacts.round_pads import ALIGNED, round_contact
 from thermograsp.touch.scene import PadPlace
@@ -114,10 +115,13 @@ def borne(touch: ThermalTouch, data: mujoco.MjData) -> Borne:
     # of the block's axes along the pad's normal, y and z, the block being upright
     seen = data.xmat[pad.body].reshape(3, 3) @ pad.axes
     sides = np.array([*seen[0, 1:], *seen[1, 1:], *(seen[_DOWN, 1:] / seen[_DOWN, 0]), 0.0, 0.0])
-    area, load, share, _, even = round_contact(
+    area, load, share, longer, even, wedge = round_contact(
         reader._bend[0], reader._curve[0, _DOWN], sides, force, 0.0, 0.0
     )
-    patch = area * share * (1 - float(reader._laws[0, 0, 0, _DOWN]["narrowing"]) * (1 - even))
+    law = reader._laws[0, 0, 0, _DOWN]
+    patch = area * share * (1 - float(law["narrowing"]) * (1 - even))
+    conducts = conductance(law, load / area) * area * share if area > 0 else 0.0
+    _, patch, _ = beside_round(law, wedge, conducts, patch, math.sqrt(patch * longer))
     reader.touches[:] = 0.0
     reader.read(data)
     noted = float(reader.touches[0, 0, 0, AREA])

@@ -12,7 +12,7 @@
 | edge | the block as a box and as a mesh, under a pad that leans by 25 degrees near an edge |
 | turned | a plate as a box, and as a mesh whose file is turned, in the middle and at a corner |
 | pinch | a sheet of 1 mm between two fingertips, 6 mm or 20 mm wide, and half of it under one, whose back is as cold |
-| swapped | under a skin, a flat fingertip on a ball of 20 mm, and such a ball as the fingertip on the block |
+| swapped | under a skin, a flat fingertip on a ball or across a rod of 20 mm, and such a fingertip on the block |
 | order | two fingertips that press one another aside of their middles, in both orders |
 
 Each fingertip of 36 degrees is pressed with 8 N on a body of 24; the drops count a second after the start of the fall
@@ -179,10 +179,14 @@ def pinch(material: str) -> Iterator[Row]:
 
 def swapped(material: str) -> Iterator[Row]:
     worn, objects = {"tip": Fingertip("tip", skin="filled_silicone")}, {"block": material}
-    ball = block(f'<geom type="sphere" size="{TOP}"/>') + fingertip("tip", FLAT, TOP)
-    tip = block(slabs(1)) + fingertip("tip", ("sphere", str(TOP), TOP), TOP)
-    told = {way: drop(world, objects, worn) for way, world in (("object", ball), ("fingertip", tip))}
-    yield Row("swapped", material, "ball under a skin", told)
+    for what, kind, size, turn in (
+        ("ball", "sphere", f"{TOP}", "0 0 0"),
+        ("rod", "cylinder", f"{TOP} {TOP}", "0 90 0"),
+    ):
+        thing = block(f'<geom type="{kind}" size="{size}" euler="{turn}"/>') + fingertip("tip", FLAT, TOP)
+        tip = block(slabs(1)) + fingertip("tip", (kind, size, TOP), TOP, turn=turn)
+        told = {way: drop(world, objects, worn) for way, world in (("object", thing), ("fingertip", tip))}
+        yield Row("swapped", material, f"{what} under a skin", told)
 
 
 def order(material: str) -> Iterator[Row]:

@@ -27,10 +27,9 @@ def study() -> Iterator[ModuleType]:
     [
         ("seam", (9.9, 9.9, 9.9, 9.9, 8.1)),
         ("leaning", (9.9, 5.9, 5.6, 9.9, 5.8)),
-        ("capsule", (5.5, 7.2, 9.8, 5.5, 7.1)),
+        ("capsule", (5.7, 7.6, 9.8, 5.7, 7.4)),
         ("overlap", (9.9, 10.5, 10.5)),
         ("edge", (5.8, 7.4)),
-        ("swapped", (1.96, 1.63)),
     ],
 )
 def test_aluminium_is_felt_as_the_docs_have_it(
@@ -38,6 +37,15 @@ def test_aluminium_is_felt_as_the_docs_have_it(
 ) -> None:
     (row,) = study.CASES[case]("aluminium")
     assert tuple(row.drops_K.values()) == pytest.approx(drops, abs=0.06)
+
+
+@pytest.mark.parametrize("material", ["aluminium", "glass", "wood"])
+def test_a_round_fingertip_on_a_block_feels_what_a_flat_one_does_on_such_a_body(
+    study: ModuleType, material: str
+) -> None:
+    for row in study.swapped(material):
+        one, other = row.drops_K.values()
+        assert other == pytest.approx(one, rel=0.03)
 
 
 def test_two_that_pinch_a_sheet_feel_what_one_does_on_half_of_it(study: ModuleType) -> None:

@@ -16,7 +16,13 @@ import pytest
 from scipy.optimize import brentq
 
 from thermograsp.thermal import IDEAL, Pad
-from thermograsp.thermal.contact import cylinder_contact, sphere_contact
+from thermograsp.thermal.contact import (
+    Wedge,
+    array_wedge_gas,
+    cylinder_contact,
+    sphere_contact,
+    wedge_gas,
+)
 from thermograsp.touch import Fingertip, ThermalTouch, install
 from thermograsp.touch.contacts.round_pads import ALIGNED, WIDE, array_round_contact, round_contact
 from thermograsp.touch.scene import bodies, pads
@@ -126,13 +132,19 @@ def test_arrays_do_as_compiled_code_does() -> None:
     sides[:, 4:6] = rng.uniform(-0.12, 0.12, (count, 2)) * (rng.random((count, 1)) < 0.7)
     force = 10 ** rng.uniform(-3, 2, count)
     y, z = rng.uniform(-0.006, 0.006, (2, count))
-    expected = np.array([round_contact(*row) for row in zip(bend_, curve, sides, force, y, z, strict=True)])
+    told = [round_contact(*row) for row in zip(bend_, curve, sides, force, y, z, strict=True)]
+    expected, wedges = np.array([each[:5] for each in told]), [each[5] for each in told]
     axes, rise = sides[:, :4].reshape(count, 2, 2), sides[:, 4:6]
-    found = np.stack(array_round_contact(bend_, curve, axes, rise, force, y, z), axis=1)
+    *numbers, wedge = array_round_contact(bend_, curve, axes, rise, force, y, z)
+    found = np.stack(numbers, axis=1)
     assert ((sides[:, 4] != 0) & (bend_[:, 1] == 0) & (curve[:, :2].sum(1) == 0)).sum() > 40
     np.testing.assert_allclose(found[:, :2], expected[:, :2], rtol=1e-7, atol=1e-15)
     np.testing.assert_allclose(found[:, 2], expected[:, 2], rtol=1e-7, atol=1e-12)
     np.testing.assert_allclose(found[:, 3:], expected[:, 3:], rtol=1e-7)
+    np.testing.assert_allclose(np.transpose(wedge), wedges, rtol=1e-7, atol=1e-12)
+    for gap in (2e-6, 1e-4):
+        (gas,) = array_wedge_gas(wedge, [np.full(count, gap)])
+        np.testing.assert_allclose(gas, [wedge_gas(each, gap) for each in wedges], rtol=1e-7)
 
 
 def summed_springs(rod: np.ndarray, curvature: float, force: float, angle: float) -> tuple[float, float]:
@@ -169,6 +181,35 @@ def test_a_rod_that_leans_presses_its_lower_end(skinned: bool, degrees: float, f
     if degrees < 1e-3:
         level = round_contact(rod, flat, ALONG, force, 0.0, 0.0)
         assert (area, load) == pytest.approx(level[:2], rel=1e-4)
+
+
+def summed_gas(wedge: Wedge, gap: float) -> float:
+    """What wedge_gas is, cell by cell."""
+    x, y = (
+        (np.arange(4000) + 0.5) / 4000 * (far - near) + near
+        for near, far in ((wedge.left, wedge.right), (wedge.lower, wedge.upper))
+    )
+    deep = (
+        wedge.depth - wedge.slope * y[:, None] - wedge.bend * y[:, None] ** 2 / 2 - wedge.curvature * x**2 / 2
+    )
+    conducts = np.where(deep < 0, 1 / (gap - np.minimum(deep, 0.0)), 0.0)
+    return float(conducts.mean() * (wedge.right - wedge.left) * (wedge.upper - wedge.lower))
+
+
+@pytest.mark.parametrize("gap", [2e-6, 1e-5, 1e-4])
+@pytest.mark.parametrize(
+    "wedge",
+    [
+        Wedge(1e-4, 0.0, 50.0, 50.0, -0.0045, 0.0045, -0.0045, 0.0045),
+        Wedge(3e-5, 0.0, 1e-5, 125.0, -0.0045, 0.0045, -0.0045, 0.0045),
+        Wedge(3e-5, 0.0, 20.0, 125.0, -0.002, 0.007, 0.001, 0.008),
+        Wedge(5e-5, 0.0, 50.0, 50.0, -0.008, -0.0025, -0.004, 0.005),
+        Wedge(1e-4, 0.05, 0.0, 125.0, -0.003, 0.006, 0.0, 0.009),
+        Wedge(-1e-4, 0.05, 0.0, 125.0, -0.0045, 0.0045, 0.0, 0.009),
+    ],
+)
+def test_gas_beside_round_bodies_is_the_sum_over_the_face(wedge: Wedge, gap: float) -> None:
+    assert wedge_gas(wedge, gap) == pytest.approx(summed_gas(wedge, gap), rel=5e-3)
 
 
 TIPS = {
@@ -248,7 +289,7 @@ def test_a_round_fingertip_feels_less_than_a_flat_one_and_the_less_the_rounder_t
 def test_a_rod_feels_less_along_a_can_than_on_a_block_and_more_across_it() -> None:
     """Along either, 9 of its 24 mm press on the sensor's face, with 9/24 of the force; across, all of it does."""
     on_block, along, across = (dropped("tip", "capsule", target) for target in ("block", "can along", "can"))
-    assert across > 1.2 * along
+    assert across > 1.15 * along  # gas beside what touches is the same for both
     assert across > on_block > along
     rod = np.array([125.0, 0.0, STIFFNESS, 0.0064, 0.012, 0.0045, 0.0045, STIFFNESS, 0.0064, 0.012])
     can = body(1 / 0.03, 0.0, WIDE, 0.04)
@@ -275,7 +316,7 @@ def test_a_rod_that_leans_feels_less_and_less(tip: str, skin: str | None) -> Non
             reading = touch.update(data)
         drops.append(float(reading.temperature_drop[0]))
     steps = np.diff(drops)
-    assert drops[0] > 0.4 and abs(drops[-1]) < 0.01
+    assert drops[0] > 0.4 and 0 < drops[-1] < 0.05  # through the gas
     assert (steps < 0.005).all() and steps.min() > -0.75 * drops[0]
 
 
@@ -291,9 +332,12 @@ def lowered(degrees: float) -> str:
 )
 @pytest.mark.parametrize("tip", TIPS)
 @pytest.mark.parametrize("target", OBJECTS)
-@pytest.mark.parametrize("degrees", [0.0, 3.2])
-def test_inside_mujoco_s_step_it_is_the_same(tip: str, target: str, degrees: float) -> None:
-    words: dict[str, Any] = {"fingertips": {"tip": "tip"}, "objects": {"object": "glass"}}
+@pytest.mark.parametrize(("degrees", "skin"), [(0.0, None), (3.2, None), (3.2, "filled_silicone")])
+def test_inside_mujoco_s_step_it_is_the_same(tip: str, target: str, degrees: float, skin: str | None) -> None:
+    words: dict[str, Any] = {
+        "fingertips": {"tip": Fingertip("tip", skin=skin)},
+        "objects": {"object": "glass"},
+    }
     leaning = scene(tip, target).replace('<body name="finger"', f'<body name="finger" euler="0 {degrees} 0"')
     model = install(mujoco.MjSpec.from_string(leaning), **words)
     data, touch = mujoco.MjData(model), ThermalTouch(model, **words, chain=IDEAL)
@@ -336,14 +380,15 @@ def after_a_press(model: mujoco.MjModel) -> float:
 
 @pytest.mark.parametrize("tip", ["ball", "short capsule", "egg"])
 def test_what_is_round_both_ways_leans_nowhere(tip: str) -> None:
-    """A block that is turned by some degrees is met at another place of a ball, and by as much."""
+    """A block that is turned by some degrees is met at another place of a ball, and by as much; of a short capsule,
+    whose pad is the ellipsoid of its radius and half its length, past the end of its line."""
     drops = []
     for degrees in (0.0, 4.0):  # further than what counts as level
         xml = scene(tip, "block").replace('<body name="object"', f'<body name="object" euler="0 {degrees} 0"')
         model = mujoco.MjModel.from_xml_string(xml)
         drops.append(after_a_press(model))
     assert drops[0] > 0.05
-    assert drops[1] == pytest.approx(drops[0], rel=0.3 if tip == "short capsule" else 0.01)
+    assert drops[1] == pytest.approx(drops[0], rel=0.35 if tip == "short capsule" else 0.01)
 
 
 def test_a_rod_that_leans_on_a_bar_under_its_sensor_presses_on_the_bar_alone() -> None:

@@ -34,7 +34,15 @@ from .footprint import (
     gas_conduction,
     solid_conduction,
 )
-from .gas_beside import beside_ball, beside_strip
+from .gas_beside import (
+    WEDGE_NODES,
+    WEDGE_WEIGHTS,
+    Wedge,
+    array_wedge_gas,
+    beside_ball,
+    beside_strip,
+    wedge_gas,
+)
 from .law import (
     CONTACT_LAW,
     CYLINDER,
@@ -49,6 +57,7 @@ from .law import (
     face_footprint,
     flat_footprint,
     flat_law,
+    mean_gap,
     pad_law,
     round_footprint,
     sphere_footprint,
@@ -71,9 +80,29 @@ from .rough_faces import (
     typical_slope,
 )
 from .round_bodies import disc_on_face
-from .spread import Beneath, beneath, even_patch, flows_of_line, flows_of_spot, narrowing, widened
+from .spread import (
+    SPOT_ON_SKIN,
+    Beneath,
+    array_beside_round,
+    beneath,
+    beside_round,
+    even_patch,
+    flows_of_line,
+    flows_of_spot,
+    narrowing,
+    widened,
+)
 
 __all__ = [
+    "wedge_gas",
+    "mean_gap",
+    "beside_round",
+    "array_beside_round",
+    "array_wedge_gas",
+    "Wedge",
+    "WEDGE_WEIGHTS",
+    "WEDGE_NODES",
+    "SPOT_ON_SKIN",
     "AIR",
     "CONTACT_LAW",
     "CURVED_TABLE",

@@ -32,6 +32,10 @@ class ArrayLaws(NamedTuple):
     half_pad: Array
     half_face: Array
     narrowing: Array
+    mean_gap: Array
+    straight: Array
+    series: Array
+    sheet: Array
     spot_scale: Array
     spot_power: Array
     spot_most: Array

@@ -41,6 +41,12 @@ CONTACT_LAW = np.dtype(
         ("face_length", "f8"),
         # of a contact that presses unevenly: by how much its patch narrows, see spread.narrowing
         ("narrowing", "f8"),
+        # beside what is round on both sides: m of the gas between faces that touch without force, the temperature jump
+        # with it, 0 of none; and spread.Beneath
+        ("mean_gap", "f8"),
+        ("straight", "f8"),
+        ("series", "f8"),
+        ("sheet", "f8"),
         # solid spots: h = exp(min(spot_scale + spot_power log p, spot_most))
         ("spot_scale", "f8"),
         ("spot_power", "f8"),
@@ -62,9 +68,8 @@ FOOTPRINT_LAW = np.dtype(
     [
         # m of a cylinder
         ("length", "f8"),
-        # of curved bodies: radius m, gap m of faces that touch without force, the temperature jump with it
+        # m of curved bodies
         ("radius", "f8"),
-        ("mean_gap", "f8"),
         # on a bare face: Hertz's modulus Pa, 0 on springs; m K/W, a disc's constriction times its radius
         ("modulus", "f8"),
         ("constriction", "f8"),
@@ -153,13 +158,13 @@ def flat_footprint(
 
 def cylinder_footprint(pad: Pad, joint: Joint, radius: float, length: float) -> np.void:
     """The law of a cylinder along z of that radius and length m; see area.cylinder_contact."""
-    beside = {"radius": radius, "mean_gap": _mean_gap(joint)}
+    beside = {"radius": radius, "mean_gap": mean_gap(joint)}
     return _followed(cylinder_law(pad, joint, radius, length), length=length, **beside)
 
 
 def sphere_footprint(pad: Pad, joint: Joint, radius: float) -> np.void:
     """The law of a sphere of that radius m; see area.sphere_contact."""
-    return _followed(sphere_law(pad, joint, radius), radius=radius, mean_gap=_mean_gap(joint))
+    return _followed(sphere_law(pad, joint, radius), radius=radius, mean_gap=mean_gap(joint))
 
 
 def bare_footprint(
@@ -197,10 +202,10 @@ def face_footprint(pad: Pad, skin: Skin | None, body: Surface) -> np.void:
     bare face, which is rigid."""
     if skin is not None:
         pair = face_joint(skin, body)
-        return _followed(flat_law(skinned(pad, skin), pair, (pad.width, pad.width)), mean_gap=_mean_gap(pair))
+        return _followed(flat_law(skinned(pad, skin), pair, (pad.width, pad.width)), mean_gap=mean_gap(pair))
     pair = joint(LAPPED_ALUMINA, body, AIR, full_contact=True)
     numbers = {
-        "mean_gap": _mean_gap(pair),
+        "mean_gap": mean_gap(pair),
         "modulus": _contact_modulus(LAPPED_ALUMINA, body),
         "constriction": (1 / LAPPED_ALUMINA.conductivity + 1 / body.conductivity) / 4,
     }
@@ -240,7 +245,7 @@ def table_footprint(
     return law
 
 
-def _mean_gap(joint: Joint) -> float:
+def mean_gap(joint: Joint) -> float:
     """m of gas between faces that touch without force, the temperature jump with it; 0 in vacuum."""
     if not joint.gas_conductivity:
         return 0.0

@@ -24,13 +24,18 @@ import numpy as np
 from thermograsp.compiled import njit
 
 from ..matter import Material, Skin
+from ..numerics import Array, namespace_of
+from .array_law import ArrayLaws
 from .footprint import beside, solid_conduction, touched
+from .gas_beside import Wedge, array_wedge_gas, wedge_gas
 from .law import CYLINDER
 from .rough_faces import LAPPED_ALUMINA, Surface
 
 _DEEPEST, _SECONDS = 0.8e-3, 1.0  # m, s, see above
 _MOST_NARROWED, _EVENED = 0.56, 1 / 3  # see narrowing
-_HALVINGS = 30  # of an interval of areas
+NEWTON_STEPS = 8
+SPOT_ON_SKIN = 2.0
+"""A contact under a skin is a line where it is as long as the face, and a spot up to half of that."""
 _FEW = 1e-6  # of what both conduct: less is no contact
 _MIDDLE = np.zeros(3)
 
@@ -137,17 +142,37 @@ def _beside_one_another(one, other, common):
 
 @njit(cache=True, error_model="numpy")
 def _resisting(resists, area, whole, below, along):
-    """m2, at least the area's, whose flow resists by that many K/W more than one over the whole."""
+    """m2, at least the area's, whose flow resists by that many K/W more than one over the whole: the lesser of straight
+    flow and of what spreads from a strip in a channel, or from a disc; and what a skin resists. along: m, of a strip, 0
+    of a disc."""
     if resists <= 0.0:
         return whole
-    low, high = area, whole
-    for _ in range(_HALVINGS):
-        middle = (low + high) / 2
-        if _drawn_together(middle, whole, below, along) > resists:
-            low = middle
-        else:
-            high = middle
-    return high
+    sheet = below.sheet
+    straight = 1.0 / (1.0 / whole + resists / (below.straight + sheet))
+    if along > 0.0:
+        spreads = _from_strip(resists, area, whole, below, along)
+    else:
+        root = below.series * math.sqrt(math.pi) / 8  # half of what a disc's resistance takes over sqrt(area)
+        more = resists + sheet / whole + 2 * root / math.sqrt(whole)
+        spreads = ((root + math.sqrt(root * root + sheet * more)) / more) ** 2
+    return max(min(straight, spreads), area)
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _from_strip(resists, area, whole, below, along):
+    """m2 of a strip in a channel, by Newton's method on its logarithm, over which its resistance is convex: from less,
+    each step is towards it and not beyond."""
+    strength, sheet = below.series / (math.pi * along), below.sheet
+    found = area
+    if sheet > 0.0:
+        found = max(found, 1.0 / (1.0 / whole + resists / sheet))
+    for _ in range(NEWTON_STEPS):
+        at = math.pi / 2 * found / whole
+        more = -strength * math.log(math.sin(at)) + sheet * (1.0 / found - 1.0 / whole) - resists
+        if more <= 0.0:
+            break
+        found *= math.exp(more / (strength * at / math.tan(at) + sheet / found))
+    return found
 
 
 @njit(cache=True, error_model="numpy")
@@ -182,3 +207,112 @@ def both_contacts(law, below, force, place):
     if law.constriction == 0.0 and gas > 0.0:
         spread *= around / gas
     return total - gas, gas, area, area + spread, whole, around
+
+
+@njit(cache=True, error_model="numpy")
+def beside_round(law, wedge, conducts, area, length):
+    """(W/K, m2, m) of what touches between round bodies together with the gas beside it, as `patches` has them of one
+    body: what they conduct, the patch that stands for both, and its longer side.
+
+    law: a CONTACT_LAW with what is beside it. wedge: of the two. conducts, area, length: W/K, m2 and m of what touches
+    of the face, 0 each where nothing does."""
+    if law.mean_gap <= 0.0:
+        return conducts, area, length
+    around = law.gas * wedge_gas(wedge, law.mean_gap)
+    if around <= 0.0:
+        return conducts, area, length
+    below = Beneath(law.straight, law.series, law.sheet)
+    resistance, face = below.straight + below.sheet, 2 * law.half_face
+    less = law.gas * wedge_gas(wedge, law.mean_gap + law.gas * resistance)
+    rest = max((wedge.right - wedge.left) * (wedge.upper - wedge.lower) - area, 0.0)
+    spread = min(around * less * resistance / (around - less), rest) if around > less else rest
+    total, longer = conducts + around, max(length * length / area, 1.0) if area > 0.0 else 1.0
+    gas, whole = min(around + law.gas / law.mean_gap * area, total), area + spread
+    wide = area + spread * around / gas
+    patch = ((total - gas) * area + gas * wide) / total
+    if area > 0.0 and total - gas > _FEW * total:
+        line = max(1.0 - SPOT_ON_SKIN * (1.0 - min(length / face, 1.0)), 0.0)
+        flows = 0.0
+        if line > 0.0:
+            flows = line * flows_of_line(total - gas, gas, area, whole, below, min(length, face))
+        if line < 1.0:
+            flows += (1.0 - line) * flows_of_spot(conducts, around, area, whole, below)
+        patch = max(patch, flows)
+    return total, patch, max(min(math.sqrt(patch * longer), face), patch / face)
+
+
+def array_beside_round(
+    law: ArrayLaws, wedge: Wedge, conducts: Array, area: Array, length: Array
+) -> tuple[Array, Array, Array]:
+    """beside_round of arrays of one shape, in whatever library."""
+    xp = namespace_of(conducts)
+    none, one = 0.0 * conducts, 1.0 + 0.0 * conducts
+    gap = law.mean_gap + none
+    known = gap > 0
+    gap = xp.where(known, gap, one)
+    below = Beneath(*(xp.where(known, each + none, one) for each in (law.straight, law.series, law.sheet)))
+    resistance, face = below.straight + below.sheet, 2 * law.half_face + none
+    around, less = (law.gas * each for each in array_wedge_gas(wedge, (gap, gap + law.gas * resistance)))
+    rest = ((wedge.right - wedge.left) * (wedge.upper - wedge.lower) - area).clip(0.0, None)
+    differs, conducting = around > less, known & (around > 0)
+    spread = around * less * resistance / xp.where(differs, around - less, one)
+    spread = xp.where(differs, xp.minimum(spread, rest), rest)
+    touches, total = area > 0, conducts + around
+    safe_area = xp.where(touches, area, one)
+    longer = xp.where(touches, (length * length / safe_area).clip(1.0, None), one)
+    safe = xp.where(conducting, total, one)
+    gas, whole = xp.minimum(around + law.gas / gap * area, total), area + spread
+    safe_gas = xp.where(conducting, gas, one)
+    wide = area + spread * around / safe_gas
+    patch = ((total - gas) * area + gas * wide) / safe
+    both = conducting & touches & (total - gas > _FEW * total) & (whole > area)
+    contact, whole = xp.where(both, total - gas, one), xp.where(both, whole, 2 * safe_area)
+    long = xp.where(touches, xp.minimum(length, face), face)
+    line = (1.0 - SPOT_ON_SKIN * (1.0 - long / face)).clip(0.0, None)
+    of_line = _array_flows(contact, safe_gas, safe_area, whole, below, long)
+    solid, beside = xp.where(both, conducts, one), xp.where(both, around, one)
+    of_spot = _array_flows(solid, beside, safe_area, whole, below, None)
+    flows = line * of_line + (1.0 - line) * of_spot
+    patch = xp.where(both, xp.maximum(patch, flows), patch)
+    side = xp.maximum(xp.minimum((patch * longer) ** 0.5, face), patch / face)
+    return (
+        xp.where(conducting, total, conducts),
+        xp.where(conducting, patch, area),
+        xp.where(conducting, side, length),
+    )
+
+
+def _array_flows(
+    contact: Array, gas: Array, area: Array, whole: Array, below: Beneath, along: Array | None
+) -> Array:
+    """flows_of_line of arrays, or flows_of_spot where `along` is None."""
+    xp = namespace_of(contact)
+    narrower, sheet = 1.0 / area - 1.0 / whole, below.sheet
+    strength = below.series / (math.pi * (1.0 if along is None else along))
+    if along is None:
+        common, beside = below.straight / whole, (below.straight + sheet) / (whole - area)
+        spread = below.series / 4 * math.sqrt(math.pi) * (area**-0.5 - whole**-0.5)
+        beneath = common + sheet / whole
+    else:
+        common = beneath = beside = (below.straight + sheet) / whole
+        spread = -strength * xp.log(xp.sin(math.pi / 2 * area / whole))
+    narrow = 1.0 / contact + beneath + xp.minimum(spread, below.straight * narrower) + sheet * narrower
+    wide = 1.0 / gas + beside
+    together = (narrow * wide - common * common) / (narrow + wide - 2 * common)
+    resists = together - 1.0 / (contact + gas) - beneath
+    found, resists = resists > 0, xp.where(resists > 0, resists, 1.0 + 0.0 * resists)
+    straight = 1.0 / (1.0 / whole + resists / (below.straight + sheet))
+    if along is None:
+        root = below.series * math.sqrt(math.pi) / 8
+        more = resists + sheet / whole + 2 * root / whole**0.5
+        spreads = ((root + (root * root + sheet * more) ** 0.5) / more) ** 2
+    else:
+        skinned = sheet > 0
+        least = 1.0 / (1.0 / whole + resists / xp.where(skinned, sheet, 1.0 + sheet))
+        spreads = xp.where(skinned, xp.maximum(area, least), area)
+        for _ in range(NEWTON_STEPS):
+            at = math.pi / 2 * spreads / whole
+            more = sheet * (1.0 / spreads - 1.0 / whole) - strength * xp.log(xp.sin(at)) - resists
+            slope = strength * at * xp.cos(at) / xp.sin(at) + sheet / spreads
+            spreads = spreads * xp.exp(more.clip(0.0, None) / slope)
+    return xp.where(found, xp.maximum(xp.minimum(straight, spreads), area), whole)

@@ -25,6 +25,7 @@ from ..contact import (
     FIRST_FORCE,
     FORCE_STEP,
     FORCES,
+    SPOT_ON_SKIN,
     Beneath,
     Pad,
     conductance,
@@ -51,7 +52,6 @@ from .springs import (
 )
 
 _FEW = 1e-6  # of what both conduct: less is no contact
-_SPOT = 2.0  # a contact under a skin is a line where it is as long as the face, and a spot up to half of that
 
 
 class Seen(NamedTuple):
@@ -270,7 +270,7 @@ def _conduct(points, near, count, what, area, load, where, law, below, crown, sh
                 flows = flows_of_line(total - freely, freely, area, whole, below, min(long, face))
             else:
                 long = min(max(row[4], area / row[4]), face)
-                spot = min(_SPOT * (1.0 - long / face), 1.0)
+                spot = min(SPOT_ON_SKIN * (1.0 - long / face), 1.0)
                 flows = (1.0 - spot) * flows_of_line(total - freely, freely, area, whole, below, long)
                 flows += spot * flows_of_spot(solid, gas, area, whole, below)
             if flows > patch:

@@ -22,6 +22,8 @@ import numpy as np
 
 from ...thermal.contact import (
     ArrayLaws,
+    Wedge,
+    array_beside_round,
     array_conductance,
     array_contact,
     array_curved_contact,
@@ -186,24 +188,14 @@ class ArrayContacts:
         area, share = array_contact(law, pressed, from_geom[..., None, :])
         width = self.width[:, None, None]
         long, shares = array_flat_patch(law, area, from_geom[..., None, :], width)
-        kept = longer = narrow = 1.0 + 0.0 * area
-        if self.any_bulging:
-            area, share, kept, longer, even = self._of_round(
-                area, share, kept, pressed, off, axis, axes, geom_turn
-            )
-            narrow = 1.0 - law.narrowing * (1.0 - even)
-            bulging = self.bulging[:, None, None] > 0
-            safe = xp.where(area > 0, area * kept * narrow * longer, 1.0 + 0.0 * area)
-            long = xp.where(bulging, safe**0.5, long)
-            shares = xp.where(bulging[..., None], 0.0 * shares, shares)
-        pressure = share / xp.where(area > 0, area, area + width**2)
-        area = area * kept
-        closed = (area > 0) & (pressure > 0)
-        safe = xp.where(closed, area, area * 0 + width**2)
-        h = array_conductance(law, xp.where(closed, pressure, pressure * 0 + 1.0))
+        flat = self._conducting(law, area, share, long)
         # 0 where nothing conducts, but what is not a number stays so, for its world alone
         none = 0.0 * pressed
-        flat = tuple(xp.where(closed, each, none) for each in (h * safe, area * narrow, long))
+        if self.any_bulging:
+            bulging = self.bulging[:, None, None] > 0
+            bulged = self._of_round(law, pressed, off, axis, axes, geom_turn)
+            flat = tuple(xp.where(bulging, new, old) for new, old in zip(bulged, flat, strict=True))
+            shares = xp.where(bulging[..., None], 0.0 * shares, shares)
         if not self.any_curved:
             return *flat, shares
         tilts = self.tilts[which]
@@ -247,19 +239,21 @@ class ArrayContacts:
         )
         return conducts, area, long, xp.where((table >= 0)[..., None], placed, shares)
 
+    def _conducting(
+        self, law: ArrayLaws, area: Array, share: Array, long: Array
+    ) -> tuple[Array, Array, Array]:
+        """(W/K, m2, m) of a contact of that area m2 under a force `share` N, 0 each where it does not touch."""
+        xp = namespace_of(area)
+        pressure = share / xp.where(area > 0, area, area + self.width[:, None, None] ** 2)
+        closed = (area > 0) & (pressure > 0)
+        h = array_conductance(law, xp.where(closed, pressure, pressure * 0 + 1.0))
+        none = 0.0 * area
+        return xp.where(closed, h * area, none), xp.where(closed, area, none), xp.where(closed, long, none)
+
     def _of_round(
-        self,
-        area: Array,
-        share: Array,
-        kept: Array,
-        pressed: Array,
-        off: Array,
-        axis: Array,
-        axes: Array,
-        geom_turn: Array,
-    ) -> tuple[Array, Array, Array, Array, Array]:
-        """Area, force and share on the face, how many times as long as broad they are and how evenly they press, (B, F,
-        G, H) each, of round pads in place of flat ones'."""
+        self, law: ArrayLaws, pressed: Array, off: Array, axis: Array, axes: Array, geom_turn: Array
+    ) -> tuple[Array, Array, Array]:
+        """(W/K, m2, m), (B, F, G, H) each, of round pads in place of flat ones', with the gas beside them."""
         xp = namespace_of(pressed)
         of_axis = self.units[axis]  # (B, F, G, 3)
         curve = (of_axis[..., None] * self.curve).sum(-2)
@@ -290,13 +284,16 @@ class ArrayContacts:
             off[..., None, 0],
             off[..., None, 1],
         )
-        bulging = self.bulging[:, None, None] > 0
-        zero = 0.0 * pressed
-        bulged = xp.where(touching, found[0], zero), xp.where(touching, found[1], zero), found[2] + zero
-        area, share, kept = (
-            xp.where(bulging, new, old) for new, old in zip(bulged, (area, share, kept), strict=True)
-        )
-        return area, share, kept, *(xp.where(bulging, each + zero, 1.0 + zero) for each in found[3:])
+        area, load, kept, longer, even, wedge = found
+        none = 0.0 * force
+        conducts, area, _ = self._conducting(law, area + none, load + none, none)
+        conducts, area = conducts * kept, area * kept * (1.0 - law.narrowing * (1.0 - even))
+        touches = area > 0
+        long = xp.where(touches, xp.where(touches, area * longer, 1.0 + none) ** 0.5, none)
+        wedge = Wedge(*(each + none for each in wedge))
+        together = array_beside_round(law, wedge, conducts, area, long)
+        away = 0.0 * pressed
+        return tuple(xp.where(touching, each, away) for each in together)  # pyright: ignore[reportReturnType]
 
     def _crown(
         self, law: ArrayLaws, radius: Array, off: Array, from_geom: Array, axes: Array, geom_turn: Array

@@ -88,7 +88,7 @@ def _redirect(touches, substeps, places, laws, small, bend, curve, redirected):
                 law, width = laws[f, e], places[e, 1]
                 pressed = touches[w, f, o, FORCE] / substeps / meeting
                 if bend[f, 0] + bend[f, 1] > 0:
-                    area, force, _, _, _ = round_contact(bend[f], curve[e], sides, pressed, 0.0, 0.0)
+                    area, force, _, _, _, _ = round_contact(bend[f], curve[e], sides, pressed, 0.0, 0.0)
                 else:
                     area, force = contact(law, pressed, place)
                 if area > 0 and force > 0:

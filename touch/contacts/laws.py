@@ -29,9 +29,12 @@ from ...thermal import (
 )
 from ...thermal.contact import (
     CURVED_TABLE,
+    Beneath,
+    beneath,
     curved_table,
     face_joint,
     in_series,
+    mean_gap,
     narrowing,
     pad_joint,
     skinned,
@@ -105,6 +108,8 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
                 laws[f, g, axis] = _law(model, geom, axis, sheet, faces)
                 if pad.skin is None:
                     laws["narrowing"][f, g, axis] = narrowing(other, pad.face)
+                if sum(pad.curvature) > 0:
+                    _open(laws[f, g, axis], faces, beneath(shape.material, pad.skin))
                 if around is not None:
                     beside[f, g, axis] = _law(model, geom, axis, sheet, around)
             for side, size in enumerate(_sides(model, geom)):
@@ -127,6 +132,11 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
             laws[f, g] = flat_law(both, faces, (side, side), (1, 2))
             if pad.skin is None and other.skin is None:
                 laws["narrowing"][f, g] = narrowing(other.face, pad.face)
+            if sum(pad.curvature) + sum(other.curvature) > 0:
+                below = beneath(material("alumina"), pad.skin)
+                more = 0.0 if other.skin is None else other.skin.resistance
+                for axis in range(3):
+                    _open(laws[f, g, axis], faces, below._replace(sheet=below.sheet + more))
     for number, pairs in enumerate(made.values(), len(tables)):
         for pair in pairs:
             numbers[pair] = number
@@ -142,6 +152,12 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
         viewed,
         radii,
     )
+
+
+def _open(law: np.void, faces: Joint, below: Beneath) -> None:
+    """Tells a law of round bodies what is beside their contact."""
+    law["mean_gap"] = mean_gap(faces)
+    law["straight"], law["series"], law["sheet"] = below
 
 
 def _rings(pad: PadPlace) -> tuple[Ring, ...]:

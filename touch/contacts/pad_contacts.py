@@ -13,6 +13,7 @@ from thermograsp.compiled import njit
 from ...thermal.contact import (
     CYLINDER,
     beside_face,
+    beside_round,
     conductance,
     contact,
     curved_contact,
@@ -191,7 +192,7 @@ def feel(
             bulging = bend[f, 0] + bend[f, 1] > 0
             if geom < 0:
                 bulging = bulging or curve[g, 0, 0] + curve[g, 0, 1] > 0
-            conducts, area, share, kept, long, narrow = 0.0, 0.0, 0.0, 1.0, 0.0, 1.0
+            conducts, area, share, long = 0.0, 0.0, 0.0, 0.0
             number, side, first, second, whole, lying = -1, axis, 0.0, 0.0, 1.0, force
             next_side, part = axis, 0.0  # of an ellipsoid: the side of the next larger radius, and its share
             for k in range(4):
@@ -246,11 +247,15 @@ def feel(
                         geom_xmat, frames, f, geom, radii[g], curve[g, axis], bend[f], pushed[f, g, 1] / force,
                         pushed[f, g, 2] / force, sides,
                     )  # fmt: skip
-                area, share, kept, longer, even = round_contact(
+                area, share, kept, longer, even, wedge = round_contact(
                     bend[f], curve[g, axis], sides, force, pushed[f, g, 1] / force, pushed[f, g, 2] / force
                 )
-                narrow = 1 - law.narrowing * (1 - even)
-                long = math.sqrt(area * kept * narrow * longer)
+                if share > 0 and area > 0:
+                    conducts = conductance(law, share / area) * area * kept
+                    area *= kept * (1 - law.narrowing * (1 - even))
+                    long = math.sqrt(area * longer)
+                conducts, area, long = beside_round(law, wedge, conducts, area, long)
+                share = 0.0
             else:
                 if geom < 0:
                     _between_turned(frames, f, g - (part_count - tips), place)
@@ -272,7 +277,7 @@ def feel(
                     conducts, area, long = between_sides(part, (conducts, area, long), larger, shares, others)
                 conducts, area, long = whole * conducts, whole * area, whole * long
             if share > 0 and area > 0:
-                conducts, area = conductance(law, share / area) * area * kept, area * kept * narrow
+                conducts = conductance(law, share / area) * area
             touch = touches[f, target]
             if conducts > 0:
                 touch[CONDUCTANCE] += weight * conducts

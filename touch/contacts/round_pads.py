@@ -29,6 +29,7 @@ import numpy as np
 
 from thermograsp.compiled import njit
 
+from ...thermal.contact import Wedge
 from ...thermal.numerics import Array, namespace_of
 from ..scene import BodyShape, PadPlace
 
@@ -102,10 +103,10 @@ def _geom(model: mujoco.MjModel, geom: int, axis: int) -> tuple[float, float, fl
 @njit(cache=True, borrows=True, error_model="numpy")
 def round_contact(bend, curve, sides, force, y, z):
     """(area m2 and force N on the face were it met in its middle, share of that area that is on it, how many times as
-    long as broad it is, and how evenly it presses: its mean pressure's square over the mean of the pressure's square)
-    at a normal force N > 0 that presses at y and z m from the pad's middle. sides: (SIDES,) the other's first axis
-    along the pad's y and z, then its second one, how much its flat face rises towards the pad along the pad's y and z,
-    m per m, and where the force presses from the other pad's middle, m along them."""
+    long as broad it is, how evenly it presses: its mean pressure's square over the mean of the pressure's square; and
+    the Wedge that is over the face) at a normal force N > 0 that presses at y and z m from the pad's middle. sides:
+    (SIDES,) the other's first axis along the pad's y and z, then its second one, how much its flat face rises towards
+    the pad along the pad's y and z, m per m, and where the force presses from the other pad's middle, m along them."""
     first = bend[0] + curve[0] * sides[0] * sides[0] + curve[1] * sides[2] * sides[2]
     both = curve[0] * sides[0] * sides[1] + curve[1] * sides[2] * sides[3]
     second = bend[1] + curve[0] * sides[1] * sides[1] + curve[1] * sides[3] * sides[3]
@@ -131,35 +132,49 @@ def round_contact(bend, curve, sides, force, y, z):
     face_width = min((1 - first_share) * bend[5] + first_share * bend[6], width)
     stiffness = bend[2] / (1 + bend[2] * curve[4])
     depth = _depth(force / stiffness, most, least, reach, width)
+    across, beyond = along * y + aside * z, along * z - aside * y
+    # a round body is no wider than its radius
+    bulk = min(other_reach, 1 / max(other * curve[0] + (1 - other) * curve[1], 1 / WIDE))
+    bulk_width = min(other_width, 1 / max((1 - other) * curve[0] + other * curve[1], 1 / WIDE))
+    left, right = max(-face_reach - across, -bulk), min(face_reach - across, bulk)
     leans = abs(along * sides[5] - aside * sides[4]) - ALIGNED
     if leans > _LEANS and middle - spread < least:
         ends = other * curve[2] + (1 - other) * curve[3], (1 - other) * curve[2] + other * curve[3]
         area, load, lower = leaning(
             bend, force, leans, most, first_share, ends, (reach, width), (face_reach, face_width), depth
         )
+        wedge = Wedge(lower, leans, 0.0, most, left, right, 0.0, 2 * face_width)
         if area <= 0:
-            return 0.0, 0.0, 0.0, 1.0, 1.0
+            return 0.0, 0.0, 0.0, 1.0, 1.0, wedge
         a, b = math.sqrt(2 * lower / most), lower / leans
-        share = _kept(along * y + aside * z, 0.0, a, face_reach, WIDE)
+        share = _kept(across, 0.0, a, face_reach, WIDE)
         longer = min(b, 2 * face_width) / (2 * min(a, face_reach))
         even = _along_line(max(1 - 2 * face_width * leans / lower, 0.0))
-        return area, load, share, max(longer, 1 / longer), even
+        return area, load, share, max(longer, 1 / longer), even, wedge
     a, b = math.sqrt(2 * depth / most), math.sqrt(2 * depth / least)
+    far_across, far_beyond = along * sides[6] + aside * sides[7], along * sides[7] - aside * sides[6]
     if curve[4] > 0:  # another fingertip: what is on a face depends on where each pad's own middle is
         face_reach = min(first_share * bend[5] + (1 - first_share) * bend[6], own_reach)
         face_width = min((1 - first_share) * bend[5] + first_share * bend[6], own_width)
         other_reach = min(other * curve[5] + (1 - other) * curve[6], other_reach)
         other_width = min((1 - other) * curve[5] + other * curve[6], other_width)
+        bulk, bulk_width = min(other_reach, bulk), min(other_width, bulk_width)
     else:
         other_reach = other_width = WIDE
-    share = _kept(along * y + aside * z, along * sides[6] + aside * sides[7], a, face_reach, other_reach)
-    share *= _kept(along * z - aside * y, along * sides[7] - aside * sides[6], b, face_width, other_width)
+    share = _kept(across, far_across, a, face_reach, other_reach)
+    share *= _kept(beyond, far_beyond, b, face_width, other_width)
+    left, right = max(-face_reach - across, -bulk - far_across), min(face_reach - across, bulk - far_across)
+    lower, upper = (
+        max(-face_width - beyond, -bulk_width - far_beyond),
+        min(face_width - beyond, bulk_width - far_beyond),
+    )
+    wedge = Wedge(depth, 0.0, least, most, left, max(left, right), lower, max(lower, upper))
     face_reach, face_width = min(face_reach, other_reach), min(face_width, other_width)
     x, y = min(face_reach / a, 1.0), min(face_width / b, 1.0)
     area, load = _clipped(x, y)
     longer = min(b, face_width) / min(a, face_reach)
     even = load * load / (area * _squared(x, y))
-    return 4 * a * b * area, 4 * stiffness * depth * a * b * load, share, max(longer, 1 / longer), even
+    return 4 * a * b * area, 4 * stiffness * depth * a * b * load, share, max(longer, 1 / longer), even, wedge
 
 
 @njit(cache=True, inner=True, borrows=True, error_model="numpy")
@@ -243,10 +258,11 @@ def _kept(at, other_at, reach, half, other_half):
 @njit(cache=True, borrows=True, error_model="numpy")
 def leaning(bend, force, angle, curvature, line_share, ends, firm_half, face_half, depth):
     """(area m2 on the sensor's face, force N on it, depth m at its lower end) of a rod-shaped pad whose line falls by
-    angle m per m towards a flat face; all 0 where the face does not reach it. bend: bends'. curvature: 1/m
-    across the line. line_share: how much the pad's y lies across the line. Half lengths m, across the line and along
-    it, of the object: ends; of what bears on the level line: firm_half; of the face: face_half. depth: m at which the
-    level line would bear the force."""
+    angle m per m towards a flat face; 0, 0 and less than 0 where the face does not reach it.
+
+    bend: bends'. curvature: 1/m across the line. line_share: how much the pad's y lies across the line. Half lengths m,
+    across the line and along it, of the object: ends; of what bears on the level line: firm_half; of the face:
+    face_half. depth: m at which the level line would bear the force."""
     (firm_reach, width), (face_reach, face_width) = firm_half, face_half
     soft_reach = min(line_share * bend[8] + (1 - line_share) * bend[9], ends[0])
     soft_width = max(min((1 - line_share) * bend[8] + line_share * bend[9], ends[1]), width)
@@ -284,7 +300,7 @@ def leaning(bend, force, angle, curvature, line_share, ends, firm_half, face_hal
             break
     lower, upper = depth - near, max(depth - far, 0.0)
     if lower <= 0:
-        return 0.0, 0.0, 0.0
+        return 0.0, 0.0, lower
     most, wide = _strips(lower, curvature, face_reach)
     least, narrow = _strips(upper, curvature, face_reach)
     return (wide - narrow) / angle, firm * (most - least) / angle, lower
@@ -302,9 +318,10 @@ def _strips(depth, curvature, reach):
 
 def array_round_contact(
     bend: Array, curve: Array, sides: Array, rise: Array, force: Array, y: Array, z: Array
-) -> tuple[Array, Array, Array, Array, Array]:
-    """(area m2, force N, share, length over breadth, evenness) of round_contact, of the force's shape. bend (..., BEND)
-    of the pads, curve (..., CURVES), sides (..., 2, 2) and rise (..., 2) of what they meet; force: N > 0. y, z: m."""
+) -> tuple[Array, Array, Array, Array, Array, Wedge]:
+    """(area m2, force N, share, length over breadth, evenness, wedge) of round_contact, of the force's shape. bend
+    (..., BEND) of the pads, curve (..., CURVES), sides (..., 2, 2) and rise (..., 2) of what they meet; force: N > 0.
+    y, z: m."""
     xp = namespace_of(force)
     (c1, c2), (half1, half2) = (curve[..., 0], curve[..., 1]), (curve[..., 2], curve[..., 3])
     y1, z1, y2, z2 = (sides[..., i, j] for i in range(2) for j in range(2))
@@ -338,6 +355,13 @@ def array_round_contact(
     area, load, squared = _clippings(xp, (face_reach / a).clip(None, 1.0), (face_width / b).clip(None, 1.0))
     even = load * load / (area * squared)
     crosswise, lengthwise = along * y + aside * z, along * z - aside * y
+    none = 0.0 * depth
+    bulk = xp.minimum(blend(other, half1, half2), 1 / blend(other, c1, c2).clip(1 / WIDE, None)) + none
+    bulk_width = xp.minimum(blend(1 - other, half1, half2), 1 / blend(1 - other, c1, c2).clip(1 / WIDE, None))
+    bulk_width = bulk_width + none
+    left, right = xp.maximum(-face_reach - crosswise, -bulk), xp.minimum(face_reach - crosswise, bulk)
+    lower_end = xp.maximum(-face_width - lengthwise, -bulk_width)
+    upper_end = xp.minimum(face_width - lengthwise, bulk_width)
     share = _kept_of(xp, crosswise, a, face_reach) * _kept_of(xp, lengthwise, b, face_width)
     longer = xp.minimum(b, face_width) / xp.minimum(a, face_reach)
     area, load = 4 * a * b * area, 4 * bend[..., 2] * depth * a * b * load
@@ -349,6 +373,16 @@ def array_round_contact(
     firm_half, face_half = (reach, width), (face_reach, face_width)
     leant = array_leaning(bend, force, fall, most, first_part, ends, firm_half, face_half, depth)
     reached = leant[0] > 0
+    wedge = Wedge(
+        xp.where(leans, leant[2], depth),
+        xp.where(leans, fall, none),
+        xp.where(leans, none, least + none),
+        most + none,
+        left,
+        xp.maximum(left, right),
+        xp.where(leans, none, lower_end),
+        xp.where(leans, 2 * face_width + none, xp.maximum(lower_end, upper_end)),
+    )
     lower = xp.where(reached, leant[2], 1.0 + 0.0 * depth)
     a, b = (2 * lower / most) ** 0.5, lower / fall
     leant_share = xp.where(reached, _kept_of(xp, crosswise, a, face_reach), 0.0 * depth)
@@ -365,6 +399,7 @@ def array_round_contact(
         xp.where(leans, leant_share, share),
         xp.maximum(longer, 1 / longer),
         xp.where(leans, xp.where(reached, leant_even, 1.0 + 0.0 * even), even),
+        wedge,
     )
 
 
@@ -492,6 +527,6 @@ def array_leaning(
         low, high = xp.where(less, depth, low), xp.where(less, high, depth)
         depth = depth - (held - load) / xp.where(rate > 0, rate, 1.0 + 0.0 * rate)
         depth = xp.where((depth >= low) & (depth <= high), depth, (low + high) / 2)
-    lower, upper = (depth - near).clip(0.0, None), (depth - far).clip(0.0, None)
-    (most, wide), (least, narrow) = strips(lower, face_reach), strips(upper, face_reach)
+    upper, lower = (depth - far).clip(0.0, None), depth - near
+    (most, wide), (least, narrow) = strips(lower.clip(0.0, None), face_reach), strips(upper, face_reach)
     return (wide - narrow) / angle, firm * (most - least) / angle, lower

@@ -134,7 +134,6 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
   const Law* law = (const Law*)numbers->laws + (f * numbers->partners + g) * 3 + axis;
   const double *bend = numbers->bends + f * BEND, *curve = numbers->curves + (g * 3 + axis) * CURVES;
   bool bulging = bend[0] + bend[1] > 0 || (other && curve[0] + curve[1] > 0);
-  double on_face = 1, narrow = 1;
   int side = axis, views = other ? 0 : (int)numbers->viewed[g];
   double seen[2] = {0};
   if (views && !bulging)
@@ -183,9 +182,15 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
     if (!other && radii[0] > 0) on_ellipsoid(facing, at, radii, curve, bend, first, second, sides);
     sides[6] = other ? place[1] + first : 0;
     sides[7] = other ? place[2] + second : 0;
-    on_face = heat_round_contact(bend, curve, sides, force, first, second, &area, &share, &longer, &even);
-    narrow = 1 - law->narrowing * (1 - even);
-    length = sqrt(area * on_face * narrow * longer);
+    Wedge beside;
+    double on_face = heat_round_contact(bend, curve, sides, force, first, second, &area, &share, &longer, &even, &beside);
+    if (area > 0 && share > 0) {
+      conducts = heat_conductance(law, numbers, share / area) * area * on_face;
+      area *= on_face * (1 - law->narrowing * (1 - even));
+      length = sqrt(area * longer);
+    }
+    share = 0;
+    heat_beside_round(law, &beside, &conducts, &area, &length);
   } else {
     if (other) { /* along what lies between both pads' sides */
       double turn = atan2(dot(other->axes[1], at->axes[2]), dot(other->axes[1], at->axes[1]));
@@ -199,10 +204,7 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
     double wide = other ? 2 * law->half_face : numbers->pads[f * PAD + WIDTH];
     if (area > 0) length = heat_flat_patch(law, area, place, wide, shares);
   }
-  if (area > 0 && share > 0) {
-    conducts = heat_conductance(law, numbers, share / area) * area * on_face;
-    area *= on_face * narrow;
-  }
+  if (area > 0 && share > 0) conducts = heat_conductance(law, numbers, share / area) * area;
   if (conducts > 0) {
     touch[CONDUCTANCE] += conducts;
     touch[AREA] += area;

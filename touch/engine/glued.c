@@ -35,7 +35,8 @@ void heat_redirect(const Numbers* numbers, double* touches) {
         meeting += numbers->glued[i * GLUED + ON] == on && meets(numbers, touch, i, laws + i, other);
       const double *bend = numbers->bends + f * BEND, curve[CURVES] = {0, 0, width / 2, width / 2, 0, WIDE, WIDE};
       double pressed = touch[FORCE] / numbers->sample_steps / meeting;
-      if (bend[0] + bend[1] > 0) heat_round_contact(bend, curve, sides, pressed, 0, 0, &area, &share, &longer, &even);
+      Wedge beside;
+      if (bend[0] + bend[1] > 0) heat_round_contact(bend, curve, sides, pressed, 0, 0, &area, &share, &longer, &even, &beside);
       else heat_contact(laws + e, pressed, place, &area, &share);
       /* the element stands out: a pad that reaches it at all is on it, and not on the object beside it */
       touch[CONDUCTANCE] = 0;

@@ -56,8 +56,13 @@ enum { VOLTAGE, READING, PREVIOUS, INTEGRAL, CUT, CHANGE, CHAIN };
 
 typedef struct {
   double area, share, size[2], across[2], ratio, stiffness, half_pad, half_face, pad_length, face_length, narrowing,
-      spot_scale, spot_power, spot_most, gas, jump, flatness, roughness, log_hardness, log_elastic_hardness, elastic_share, shape;
+      mean_gap, straight, series, sheet, spot_scale, spot_power, spot_most, gas, jump, flatness, roughness, log_hardness, log_elastic_hardness, elastic_share, shape;
 } Law;
+
+/* two round surfaces that touch, see thermal/contact/gas_beside.py */
+typedef struct {
+  double depth, slope, bend, curvature, left, right, lower, upper;
+} Wedge;
 
 enum {
   NODES = 13,     /* of the strips of a pattern */
@@ -157,7 +162,8 @@ double heat_conductance(const Law* law, const Numbers* numbers, double pressure)
 void heat_contact(const Law* law, double force, const double place[3], double* area, double* share);
 double heat_flat_patch(const Law* law, double area, const double place[3], double width, double shares[4]);
 double heat_round_contact(const double* bend, const double* curve, const double sides[SIDES], double force, double y, double z,
-                          double* area, double* share, double* longer, double* even);
+                          double* area, double* share, double* longer, double* even, Wedge* wedge);
+void heat_beside_round(const Law* law, const Wedge* wedge, double* conducts, double* area, double* length);
 
 double heat_tilted(const double* tilt, double first_force, double force, double slope, double middle, double* pressed);
 double heat_curved(const double* table, const double grid[3], double force, double aside, double along, double* area,

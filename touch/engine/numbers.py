@@ -23,7 +23,7 @@ from ..heat import TipField, Wall, crossing_rate, narrow_tables, resolution, tip
 from ..scene import BodyShape, PadPlace
 from .backs import back_rows
 
-_VERSION = 16
+_VERSION = 17
 
 
 def packed(

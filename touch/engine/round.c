@@ -11,6 +11,13 @@
 #define LEANS 1e-7 /* m per m, below which a line lies level */
 #define LEANING_STEPS 20
 #define EVENLY (5.0 / 6) /* of a line, the square of the mean pressure over the mean of its square */
+#define SHORT 1e-9    /* m, that a line which does not reach the other counts to touch */
+#define SLIGHT 1e-4   /* rad: a smaller arc is its tangent */
+#define FEW 1e-6      /* of what contact and gas conduct: less is no contact */
+#define SPOT_ON_SKIN 2.0
+/* Gauss's four places between 0 and 1, and their weights */
+#define WEDGE_NODES 0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970262
+#define WEDGE_WEIGHTS 0.17392742256872679, 0.3260725774312732, 0.3260725774312732, 0.17392742256872679
 #define NEARLY 0.999 /* of a line's depth at one end to that at the other, from which on it is the same */
 
 static double disc(double s) { return (s * sqrt(1 - s * s) + asin(s)) / 2; }
@@ -121,7 +128,7 @@ static double leaning(const double* bend, double force, double angle, double cur
 }
 
 double heat_round_contact(const double* bend, const double* curve, const double sides[SIDES], double force, double y, double z,
-                          double* area, double* share, double* longer, double* even) {
+                          double* area, double* share, double* longer, double* even, Wedge* wedge) {
   double first = bend[0] + curve[0] * sides[0] * sides[0] + curve[1] * sides[2] * sides[2];
   double both = curve[0] * sides[0] * sides[1] + curve[1] * sides[2] * sides[3];
   double second = bend[1] + curve[0] * sides[1] * sides[1] + curve[1] * sides[3] * sides[3];
@@ -135,36 +142,59 @@ double heat_round_contact(const double* bend, const double* curve, const double 
   }
   double along = sqrt(first_share), aside = copysign(sqrt(1 - first_share), both), part = along * sides[0] + aside * sides[1];
   double other = lesser(part * part, 1);
-  double reach = lesser(first_share * bend[3] + (1 - first_share) * bend[4], other * curve[2] + (1 - other) * curve[3]);
-  double width = lesser((1 - first_share) * bend[3] + first_share * bend[4], (1 - other) * curve[2] + other * curve[3]);
+  double other_reach = other * curve[2] + (1 - other) * curve[3], other_width = (1 - other) * curve[2] + other * curve[3];
+  double reach = lesser(first_share * bend[3] + (1 - first_share) * bend[4], other_reach);
+  double width = lesser((1 - first_share) * bend[3] + first_share * bend[4], other_width);
   double face_reach = lesser(first_share * bend[5] + (1 - first_share) * bend[6], reach);
   double face_width = lesser((1 - first_share) * bend[5] + first_share * bend[6], width);
   double stiffness = bend[2] / (1 + bend[2] * curve[4]);
   double depth = depth_of(force / stiffness, most, least, reach, width), load;
+  double over = along * y + aside * z, beyond = along * z - aside * y;
+  /* a round body is no wider than its radius */
+  double bulk = lesser(other_reach, 1 / greater(other * curve[0] + (1 - other) * curve[1], 1 / WIDE));
+  double bulk_width = lesser(other_width, 1 / greater((1 - other) * curve[0] + other * curve[1], 1 / WIDE));
+  wedge->left = greater(-face_reach - over, -bulk);
+  wedge->right = lesser(face_reach - over, bulk);
+  wedge->curvature = most;
   double leans = fabs(along * sides[5] - aside * sides[4]) - ALIGNED;
   if (leans > LEANS && middle - spread < least) {
-    double ends[2] = {other * curve[2] + (1 - other) * curve[3], (1 - other) * curve[2] + other * curve[3]}, lower;
+    double ends[2] = {other_reach, other_width}, lower;
     double firm_half[2] = {reach, width}, face_half[2] = {face_reach, face_width};
     *share = leaning(bend, force, leans, most, first_share, ends, firm_half, face_half, depth, area, &lower);
     *longer = 1;
     *even = 1;
+    wedge->depth = lower;
+    wedge->slope = leans;
+    wedge->bend = wedge->lower = 0;
+    wedge->upper = 2 * face_width;
     if (!(*area > 0)) return 0;
     double across = sqrt(2 * lower / most);
     *longer = lesser(lower / leans, 2 * face_width) / (2 * lesser(across, face_reach));
     *longer = greater(*longer, 1 / *longer);
     *even = along_line(greater(1 - 2 * face_width * leans / lower, 0));
-    return kept(along * y + aside * z, 0, across, face_reach, WIDE);
+    return kept(over, 0, across, face_reach, WIDE);
   }
   double a = sqrt(2 * depth / most), b = sqrt(2 * depth / least);
-  double other_reach = WIDE, other_width = WIDE;
+  double far_over = along * sides[6] + aside * sides[7], far_beyond = along * sides[7] - aside * sides[6];
   if (curve[4] > 0) { /* another fingertip: what is on a face depends on where each pad's own middle is */
     face_reach = lesser(first_share * bend[5] + (1 - first_share) * bend[6], first_share * bend[3] + (1 - first_share) * bend[4]);
     face_width = lesser((1 - first_share) * bend[5] + first_share * bend[6], (1 - first_share) * bend[3] + first_share * bend[4]);
-    other_reach = lesser(other * curve[5] + (1 - other) * curve[6], other * curve[2] + (1 - other) * curve[3]);
-    other_width = lesser((1 - other) * curve[5] + other * curve[6], (1 - other) * curve[2] + other * curve[3]);
+    other_reach = lesser(other * curve[5] + (1 - other) * curve[6], other_reach);
+    other_width = lesser((1 - other) * curve[5] + other * curve[6], other_width);
+    bulk = lesser(other_reach, bulk);
+    bulk_width = lesser(other_width, bulk_width);
+  } else {
+    other_reach = other_width = WIDE;
   }
-  double on_faces = kept(along * y + aside * z, along * sides[6] + aside * sides[7], a, face_reach, other_reach);
-  on_faces *= kept(along * z - aside * y, along * sides[7] - aside * sides[6], b, face_width, other_width);
+  double on_faces = kept(over, far_over, a, face_reach, other_reach);
+  on_faces *= kept(beyond, far_beyond, b, face_width, other_width);
+  wedge->depth = depth;
+  wedge->slope = 0;
+  wedge->bend = least;
+  wedge->left = greater(-face_reach - over, -bulk - far_over);
+  wedge->right = greater(lesser(face_reach - over, bulk - far_over), wedge->left);
+  wedge->lower = greater(-face_width - beyond, -bulk_width - far_beyond);
+  wedge->upper = greater(lesser(face_width - beyond, bulk_width - far_beyond), wedge->lower);
   face_reach = lesser(face_reach, other_reach);
   face_width = lesser(face_width, other_width);
   double x = lesser(face_reach / a, 1), breadth = lesser(face_width / b, 1), quarter = clipped(x, breadth, &load);
@@ -174,4 +204,111 @@ double heat_round_contact(const double* bend, const double* curve, const double 
   *longer = lesser(b, face_width) / lesser(a, face_reach);
   *longer = greater(*longer, 1 / *longer);
   return on_faces;
+}
+
+/* m per m of y, as _across_wedge of thermal/contact/gas_beside.py. */
+static double across_wedge(const Wedge* wedge, double gap, double y) {
+  double deep = wedge->depth - wedge->slope * y - wedge->bend * y * y / 2, half = wedge->curvature / 2;
+  double start = sqrt(greater(deep, 0) / half), space = gap - deep, root = sqrt(fabs(space * half)), total = 0;
+  double sides[2][2] = {{wedge->left, wedge->right}, {-wedge->right, -wedge->left}};
+  for (int n = 0; n < 2; n++) {
+    double near = greater(sides[n][0], start), far = sides[n][1];
+    if (far <= near) continue;
+    double turn = root * (far - near) / (space + half * far * near);
+    if (turn < SLIGHT) total += (far - near) / (space + half * far * near);
+    else total += (space > 0 ? atan(turn) : atanh(turn)) / root;
+  }
+  return total;
+}
+
+static double wedge_gas(const Wedge* wedge, double gap) {
+  static const double nodes[] = {WEDGE_NODES}, weights[] = {WEDGE_WEIGHTS};
+  double end = wedge->slope > 0 ? greater(wedge->depth / wedge->slope, SHORT) : sqrt(2 * wedge->depth / wedge->bend), total = 0;
+  for (int way = 1; way > -2; way -= 2) {
+    double near = greater(way > 0 ? wedge->lower : -wedge->upper, 0), far = greater(way > 0 ? wedge->upper : -wedge->lower, near);
+    double turn = asin(lesser(near / end, 1)), turns = asin(lesser(far / end, 1)) - turn;
+    double root = sqrt(greater(near - end, 0)), roots = sqrt(greater(far - end, root * root)) - root;
+    for (int k = 0; k < (int)(sizeof nodes / sizeof *nodes); k++) {
+      if (turns > 0) { /* beside what touches */
+        double at = turn + nodes[k] * turns;
+        total += weights[k] * turns * end * cos(at) * across_wedge(wedge, gap, way * end * sin(at));
+      }
+      if (roots > 0) { /* beyond its end */
+        double at = root + nodes[k] * roots;
+        total += weights[k] * roots * 2 * at * across_wedge(wedge, gap, way * (end + at * at));
+      }
+    }
+  }
+  return total;
+}
+
+/* Of thermal/contact/spread.py: what a flow over an area meets more than one over the whole, from a strip `along` m long or from
+a disc, 0; and the area that meets so much more. */
+static double drawn_together(double area, double whole, const Law* below, double along) {
+  double narrower = 1 / area - 1 / whole, spread = below->series / 4 * (sqrt(pi / area) - sqrt(pi / whole));
+  if (along > 0) spread = -below->series / (pi * along) * log(sin(pi / 2 * area / whole));
+  return lesser(spread, below->straight * narrower) + below->sheet * narrower;
+}
+
+static double resisting(double resists, double area, double whole, const Law* below, double along) {
+  if (!(resists > 0)) return whole;
+  double sheet = below->sheet, straight = 1 / (1 / whole + resists / (below->straight + sheet)), spreads = area;
+  if (along > 0) {
+    double strength = below->series / (pi * along);
+    if (sheet > 0) spreads = greater(spreads, 1 / (1 / whole + resists / sheet));
+    for (int i = 0; i < NEWTON_STEPS; i++) {
+      double at = pi / 2 * spreads / whole;
+      double more = -strength * log(sin(at)) + sheet * (1 / spreads - 1 / whole) - resists;
+      if (more <= 0) break;
+      spreads *= exp(more / (strength * at / tan(at) + sheet / spreads));
+    }
+  } else {
+    double root = below->series * sqrt(pi) / 8, more = resists + sheet / whole + 2 * root / sqrt(whole);
+    spreads = (root + sqrt(root * root + sheet * more)) / more;
+    spreads *= spreads;
+  }
+  return greater(lesser(straight, spreads), area);
+}
+
+static double beside_one_another(double one, double other, double common) {
+  return (one * other - common * common) / (one + other - 2 * common);
+}
+
+static double flows_of_line(double contact, double gas, double area, double whole, const Law* below, double along) {
+  if (area <= 0 || area >= whole) return whole;
+  double both = (below->straight + below->sheet) / whole;
+  double narrow = 1 / contact + both + drawn_together(area, whole, below, along);
+  double resists = beside_one_another(narrow, 1 / gas + both, both) - 1 / (contact + gas) - both;
+  return resisting(resists, area, whole, below, along);
+}
+
+static double flows_of_spot(double contact, double gas, double area, double whole, const Law* below) {
+  if (area <= 0 || area >= whole) return whole;
+  double common = below->straight / whole, sheet = below->sheet / whole;
+  double narrow = 1 / contact + common + sheet + drawn_together(area, whole, below, 0);
+  double wide = 1 / gas + (below->straight + below->sheet) / (whole - area);
+  double resists = beside_one_another(narrow, wide, common) - 1 / (contact + gas) - common - sheet;
+  return resisting(resists, area, whole, below, 0);
+}
+
+void heat_beside_round(const Law* law, const Wedge* wedge, double* conducts, double* area, double* length) {
+  if (!(law->mean_gap > 0)) return;
+  double around = law->gas * wedge_gas(wedge, law->mean_gap);
+  if (!(around > 0)) return;
+  double resistance = law->straight + law->sheet, face = 2 * law->half_face;
+  double less = law->gas * wedge_gas(wedge, law->mean_gap + law->gas * resistance);
+  double rest = greater((wedge->right - wedge->left) * (wedge->upper - wedge->lower) - *area, 0);
+  double spread = around > less ? lesser(around * less * resistance / (around - less), rest) : rest;
+  double total = *conducts + around, longer = *area > 0 ? greater(*length * *length / *area, 1) : 1;
+  double gas = lesser(around + law->gas / law->mean_gap * *area, total), whole = *area + spread;
+  double patch = ((total - gas) * *area + gas * (*area + spread * around / gas)) / total;
+  if (*area > 0 && total - gas > FEW * total) {
+    double line = greater(1 - SPOT_ON_SKIN * (1 - lesser(*length / face, 1)), 0), flows = 0;
+    if (line > 0) flows = line * flows_of_line(total - gas, gas, *area, whole, law, lesser(*length, face));
+    if (line < 1) flows += (1 - line) * flows_of_spot(*conducts, around, *area, whole, law);
+    patch = greater(patch, flows);
+  }
+  *conducts = total;
+  *area = patch;
+  *length = greater(lesser(sqrt(patch * longer), face), patch / face);
 }

@@ -9,7 +9,22 @@ import numpy as np
 import pytest
 
 from thermograsp.thermal import AIR, LAPPED_ALUMINA, Pad, Surface, material
-from thermograsp.thermal.contact import bare_footprint, beneath, conduction, even_patch, round_footprint
+from thermograsp.thermal.contact import (
+    Wedge,
+    array_beside_round,
+    array_laws,
+    bare_footprint,
+    beneath,
+    beside_round,
+    conduction,
+    even_patch,
+    face_joint,
+    flat_law,
+    footprint,
+    round_footprint,
+    skinned,
+    solid_conduction,
+)
 from thermograsp.thermal.matter import skin
 
 PAD, FACE = Pad(), Pad().face ** 2
@@ -99,3 +114,39 @@ def test_under_a_skin_it_is_wider_than_what_touches_and_more_force_is_no_less_he
         even_patch(law, body, 5.0, worn)
         > (1.1 if name == "aluminium" else 1.5) * conduction(law, 5.0, np.zeros(3))[0]
     )
+
+
+@pytest.mark.parametrize("name", ["aluminium", "glass", "wood"])
+@pytest.mark.parametrize("length", [None, 0.08])
+@pytest.mark.parametrize("force", [0.3, 3.0, 30.0])
+def test_two_round_bodies_have_the_patch_of_the_one_that_they_are_beside_a_plane(
+    name: str, length: float | None, force: float
+) -> None:
+    """A ball of 40 mm on one of 40 mm is one of 20 mm on a plane, and so are rods that lie along one another."""
+    body, worn, half = material(name), skin("filled_silicone"), PAD.face / 2
+    law, below = round_footprint(PAD, worn, Surface.of(body), 0.02, length), beneath(body, worn)
+    pair = flat_law(skinned(PAD, worn), face_joint(worn, Surface.of(body)), (1.0, 1.0))
+    pair["mean_gap"], pair["straight"], pair["series"], pair["sheet"] = law["mean_gap"], *below
+    area, load = footprint(law, force, np.zeros(3))
+    square = area / np.pi if length is None else (area / (2 * PAD.face)) ** 2
+    bend = 50.0 if length is None else 1e-6
+    wedge = Wedge(square * 25.0, 0.0, bend, 50.0, -half, half, -half, half)
+    side = np.sqrt(area) if length is None else PAD.face
+    alone = solid_conduction(law, area, load)
+    conducts, patch, long = beside_round(pair, wedge, alone, area, side)
+    assert conducts == pytest.approx(conduction(law, force, np.zeros(3))[1], rel=5e-3)
+    assert patch == pytest.approx(even_patch(law, body, force, worn), rel=0.01)
+    assert long == pytest.approx(np.sqrt(patch) if length is None else PAD.face, rel=1e-6)
+    rows = array_laws(np.array([pair]), np.zeros(0))
+    many = Wedge(*(np.array([each]) for each in wedge))
+    found = array_beside_round(rows, many, *(np.array([each]) for each in (alone, area, side)))
+    np.testing.assert_allclose(np.ravel(found), (conducts, patch, long), rtol=1e-9)
+    apart = Wedge(1e-9, *wedge[1:])
+    total, wide, _ = beside_round(pair, apart, 0.0, 0.0, 0.0)
+    assert 0 < total < conducts and area < wide <= FACE
+    (one,), (other,), _ = array_beside_round(
+        rows, Wedge(*(np.array([each]) for each in apart)), *(np.zeros(1),) * 3
+    )
+    assert (one, other) == pytest.approx((total, wide))
+    pair["mean_gap"] = 0.0
+    assert beside_round(pair, wedge, alone, area, side) == (alone, area, side)
