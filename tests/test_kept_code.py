@@ -132,6 +132,24 @@ def test_numba_has_its_places_in_this_order() -> None:
     assert places == ["UserProvidedCacheLocator", "InTreeCacheLocator"]
 
 
+def test_copies_of_the_package_share_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("numba.config.CACHE_DIR", str(tmp_path / "code"))
+
+    def path(copy: str, module: str) -> Path:
+        source = tmp_path / copy / "kernel.py"
+        source.parent.mkdir(exist_ok=True)
+        source.write_text(text := "def kernel(x):\n    return x\n")
+        scope: dict[str, Any] = {"__name__": module}
+        exec(compile(text, str(source), "exec"), scope)
+        return Path(cache._ByModule.from_function(scope["kernel"], str(source)).get_cache_path())
+
+    one = path("one", "thermograsp.thermal.kernel")
+    assert one == path("other", "thermograsp.thermal.kernel")
+    assert one != path("one", "thermograsp.touch.kernel")
+    assert path("one", "kernel") != path("other", "kernel")
+    assert one.parents[1] == tmp_path / "code"
+
+
 @unix
 def test_what_others_have_compiled_is_read_where_it_cannot_be_written(others: Path) -> None:
     said = run_as_reader(others, others / "no home")

@@ -23,6 +23,7 @@ from .hashes import compiled_hash
 from .libraries import InnerLibrary, into
 
 _LOG = logging.getLogger(__name__)
+_PACKAGE = __name__.partition(".")[0]
 _REPORTED: list[str] = []
 """The first function that this process has compiled."""
 
@@ -50,6 +51,18 @@ _Chosen, _BesideSource = cast(tuple[Any, Any], tuple(CompileResultCacheImpl._loc
 """numba's places of code: in NUMBA_CACHE_DIR, and in the source's folder. Their names depend on numba's version."""
 
 
+class _ByModule(_Chosen):
+    """In NUMBA_CACHE_DIR, by the module's name: what one copy of the package has compiled serves all, as hashes say
+    whether it is the same."""
+
+    def __init__(self, py_func: Any, py_file: str) -> None:
+        super().__init__(py_func, py_file)
+        package, *folders = py_func.__module__.split(".")[:-1] or [""]
+        if package == _PACKAGE:
+            chosen = cast(Any, numba).config.CACHE_DIR
+            self._cache_path = os.path.join(chosen, f"{package}-numba-{numba.__version__}", *folders)
+
+
 class _Unwritable(_BesideSource):
     """Where no folder can be written: the source's. What others have kept can still be read."""
 
@@ -59,9 +72,9 @@ class _Unwritable(_BesideSource):
 
 
 class _Implementation(CompileResultCacheImpl):
-    """numba's, with one more place to try."""
+    """numba's, one of them by another name, with one more place to try."""
 
-    _locator_classes = (*CompileResultCacheImpl._locator_classes, _Unwritable)
+    _locator_classes = (_ByModule, *CompileResultCacheImpl._locator_classes[1:], _Unwritable)
 
 
 class KernelCache(FunctionCache):
@@ -115,7 +128,7 @@ class KernelCache(FunctionCache):
     def _shared(self) -> Iterator[str]:
         """Folders that numba would have taken if this user could write them: others may have filled them."""
         function = self._dispatcher.py_func
-        for kind in (_Chosen, _BesideSource):
+        for kind in (_ByModule, _BesideSource):
             if type(self._impl.locator) is kind:
                 return
             if kind is _BesideSource or cast(Any, numba).config.CACHE_DIR:
