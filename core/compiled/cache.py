@@ -7,6 +7,7 @@ import hashlib
 import inspect
 import logging
 import os
+import sys
 import warnings
 from collections.abc import Iterator
 from typing import Any, cast
@@ -52,15 +53,17 @@ _Chosen, _BesideSource = cast(tuple[Any, Any], tuple(CompileResultCacheImpl._loc
 
 
 class _ByModule(_Chosen):
-    """In NUMBA_CACHE_DIR, by the module's name: what one copy of the package has compiled serves all, as hashes say
-    whether it is the same."""
+    """In NUMBA_CACHE_DIR, by the module's name: what one copy of the package has compiled serves all of its version, as
+    hashes say whether it is the same. Of copies that differ the last one's is kept."""
 
     def __init__(self, py_func: Any, py_file: str) -> None:
         super().__init__(py_func, py_file)
         package, *folders = py_func.__module__.split(".")[:-1] or [""]
         if package == _PACKAGE:
             chosen = cast(Any, numba).config.CACHE_DIR
-            self._cache_path = os.path.join(chosen, f"{package}-numba-{numba.__version__}", *folders)
+            version = sys.modules[_PACKAGE].__version__  # whose import would run in a circle
+            versions = f"{package}-{version}-numba-{numba.__version__}"
+            self._cache_path = os.path.join(chosen, versions, *folders)
 
 
 class _Unwritable(_BesideSource):

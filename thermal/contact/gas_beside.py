@@ -40,7 +40,7 @@ def _gauss(count: int) -> tuple[np.ndarray, np.ndarray]:
 
 _NODES, _WEIGHTS = _gauss(8)
 _HERTZ = 0.7  # see above
-WEDGE_NODES, WEDGE_WEIGHTS = _gauss(4)
+_WEDGE_NODES, _WEDGE_WEIGHTS = _gauss(4)
 _SLIGHT = 1e-4  # rad: a smaller arc is its tangent
 _SHORT = 1e-9  # m, that what does not reach the other counts to touch
 
@@ -78,14 +78,14 @@ def wedge_gas(wedge, gap):
         turns = math.asin(min(max(far, near) / end, 1.0)) - turn
         root = math.sqrt(max(near - end, 0.0))
         roots = math.sqrt(max(far - end, root * root)) - root
-        for k in range(len(WEDGE_NODES)):
+        for k in range(len(_WEDGE_NODES)):
             if turns > 0.0:  # beside what touches
-                at = turn + WEDGE_NODES[k] * turns
+                at = turn + _WEDGE_NODES[k] * turns
                 here = _across_wedge(wedge, gap, way * end * math.sin(at))
-                total += WEDGE_WEIGHTS[k] * turns * end * math.cos(at) * here
+                total += _WEDGE_WEIGHTS[k] * turns * end * math.cos(at) * here
             if roots > 0.0:  # beyond its end
-                at = root + WEDGE_NODES[k] * roots
-                total += WEDGE_WEIGHTS[k] * roots * 2 * at * _across_wedge(wedge, gap, way * (end + at * at))
+                at = root + _WEDGE_NODES[k] * roots
+                total += _WEDGE_WEIGHTS[k] * roots * 2 * at * _across_wedge(wedge, gap, way * (end + at * at))
     return total
 
 
@@ -126,7 +126,7 @@ def array_wedge_gas(wedge: Wedge, gaps: Sequence[Array]) -> list[Array]:
         turns = xp.asin((far / end).clip(None, 1.0)) - turn
         root = (near - end).clip(0.0, None) ** 0.5
         roots = xp.maximum((far - end).clip(0.0, None) ** 0.5, root) - root
-        for node, weight in zip(WEDGE_NODES.tolist(), WEDGE_WEIGHTS.tolist(), strict=True):
+        for node, weight in zip(_WEDGE_NODES.tolist(), _WEDGE_WEIGHTS.tolist(), strict=True):
             at, beyond = turn + node * turns, root + node * roots
             places += [way * end * xp.sin(at), way * (end + beyond * beyond)]
             weights += [weight * turns * end * xp.cos(at), weight * roots * 2 * beyond]

@@ -33,7 +33,7 @@ from .rough_faces import LAPPED_ALUMINA, Surface
 
 _DEEPEST, _SECONDS = 0.8e-3, 1.0  # m, s, see above
 _MOST_NARROWED, _EVENED = 0.56, 1 / 3  # see narrowing
-NEWTON_STEPS = 8
+_NEWTON_STEPS = 8
 SPOT_ON_SKIN = 2.0
 """A contact under a skin is a line where it is as long as the face, and a spot up to half of that."""
 _FEW = 1e-6  # of what both conduct: less is no contact
@@ -166,7 +166,7 @@ def _from_strip(resists, area, whole, below, along):
     found = area
     if sheet > 0.0:
         found = max(found, 1.0 / (1.0 / whole + resists / sheet))
-    for _ in range(NEWTON_STEPS):
+    for _ in range(_NEWTON_STEPS):
         at = math.pi / 2 * found / whole
         more = -strength * math.log(math.sin(at)) + sheet * (1.0 / found - 1.0 / whole) - resists
         if more <= 0.0:
@@ -310,7 +310,7 @@ def _array_flows(
         skinned = sheet > 0
         least = 1.0 / (1.0 / whole + resists / xp.where(skinned, sheet, 1.0 + sheet))
         spreads = xp.where(skinned, xp.maximum(area, least), area)
-        for _ in range(NEWTON_STEPS):
+        for _ in range(_NEWTON_STEPS):
             at = math.pi / 2 * spreads / whole
             more = sheet * (1.0 / spreads - 1.0 / whole) - strength * xp.log(xp.sin(at)) - resists
             slope = strength * at * xp.cos(at) / xp.sin(at) + sheet / spreads

@@ -109,7 +109,7 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
                 if pad.skin is None:
                     laws["narrowing"][f, g, axis] = narrowing(other, pad.face)
                 if sum(pad.curvature) > 0:
-                    _open(laws[f, g, axis], faces, beneath(shape.material, pad.skin))
+                    _tell_beside(laws[f, g, axis], faces, beneath(shape.material, pad.skin))
                 if around is not None:
                     beside[f, g, axis] = _law(model, geom, axis, sheet, around)
             for side, size in enumerate(_sides(model, geom)):
@@ -136,7 +136,7 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
                 below = beneath(material("alumina"), pad.skin)
                 more = 0.0 if other.skin is None else other.skin.resistance
                 for axis in range(3):
-                    _open(laws[f, g, axis], faces, below._replace(sheet=below.sheet + more))
+                    _tell_beside(laws[f, g, axis], faces, below._replace(sheet=below.sheet + more))
     for number, pairs in enumerate(made.values(), len(tables)):
         for pair in pairs:
             numbers[pair] = number
@@ -154,7 +154,7 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
     )
 
 
-def _open(law: np.void, faces: Joint, below: Beneath) -> None:
+def _tell_beside(law: np.void, faces: Joint, below: Beneath) -> None:
     """Tells a law of round bodies what is beside their contact."""
     law["mean_gap"] = mean_gap(faces)
     law["straight"], law["series"], law["sheet"] = below

@@ -192,7 +192,7 @@ def feel(
             bulging = bend[f, 0] + bend[f, 1] > 0
             if geom < 0:
                 bulging = bulging or curve[g, 0, 0] + curve[g, 0, 1] > 0
-            conducts, area, share, long = 0.0, 0.0, 0.0, 0.0
+            conducts, area, long = 0.0, 0.0, 0.0
             number, side, first, second, whole, lying = -1, axis, 0.0, 0.0, 1.0, force
             next_side, part = axis, 0.0  # of an ellipsoid: the side of the next larger radius, and its share
             for k in range(4):
@@ -255,7 +255,6 @@ def feel(
                     area *= kept * (1 - law.narrowing * (1 - even))
                     long = math.sqrt(area * longer)
                 conducts, area, long = beside_round(law, wedge, conducts, area, long)
-                share = 0.0
             else:
                 if geom < 0:
                     _between_turned(frames, f, g - (part_count - tips), place)
@@ -264,6 +263,8 @@ def feel(
                     # of two fingertips both faces count as wide as what touches of them, whichever is named first
                     wide = pads[f, WIDTH] if geom >= 0 else 2 * law.half_face
                     long = flat_patch(law, area, place, wide, shares)
+                    if share > 0:
+                        conducts = conductance(law, share / area) * area
             for ring in range(1 + RINGS if pads[f, AROUND] > 0 else 1):
                 for turn in range(2 if part > 0 else 1):
                     known = curved[f, g, next_side if turn else side, ring] if number >= 0 else -1
@@ -276,8 +277,6 @@ def feel(
                     larger = curved_touch(tables[curved[f, g, next_side, 0]], lying, first, second, others)
                     conducts, area, long = between_sides(part, (conducts, area, long), larger, shares, others)
                 conducts, area, long = whole * conducts, whole * area, whole * long
-            if share > 0 and area > 0:
-                conducts = conductance(law, share / area) * area
             touch = touches[f, target]
             if conducts > 0:
                 touch[CONDUCTANCE] += weight * conducts

@@ -189,7 +189,6 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
       area *= on_face * (1 - law->narrowing * (1 - even));
       length = sqrt(area * longer);
     }
-    share = 0;
     heat_beside_round(law, &beside, &conducts, &area, &length);
   } else {
     if (other) { /* along what lies between both pads' sides */
@@ -203,8 +202,8 @@ static bool feel(const Numbers* numbers, const Work* work, const mjData* d, int 
     /* of two fingertips both faces count as wide as what touches of them, whichever is named first */
     double wide = other ? 2 * law->half_face : numbers->pads[f * PAD + WIDTH];
     if (area > 0) length = heat_flat_patch(law, area, place, wide, shares);
+    if (area > 0 && share > 0) conducts = heat_conductance(law, numbers, share / area) * area;
   }
-  if (area > 0 && share > 0) conducts = heat_conductance(law, numbers, share / area) * area;
   if (conducts > 0) {
     touch[CONDUCTANCE] += conducts;
     touch[AREA] += area;

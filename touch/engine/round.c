@@ -15,6 +15,7 @@
 #define SLIGHT 1e-4   /* rad: a smaller arc is its tangent */
 #define FEW 1e-6      /* of what contact and gas conduct: less is no contact */
 #define SPOT_ON_SKIN 2.0
+#define SPREAD_STEPS 8 /* Newton's, to a strip's width */
 /* Gauss's four places between 0 and 1, and their weights */
 #define WEDGE_NODES 0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970262
 #define WEDGE_WEIGHTS 0.17392742256872679, 0.3260725774312732, 0.3260725774312732, 0.17392742256872679
@@ -256,7 +257,7 @@ static double resisting(double resists, double area, double whole, const Law* be
   if (along > 0) {
     double strength = below->series / (pi * along);
     if (sheet > 0) spreads = greater(spreads, 1 / (1 / whole + resists / sheet));
-    for (int i = 0; i < NEWTON_STEPS; i++) {
+    for (int i = 0; i < SPREAD_STEPS; i++) {
       double at = pi / 2 * spreads / whole;
       double more = -strength * log(sin(at)) + sheet * (1 / spreads - 1 / whole) - resists;
       if (more <= 0) break;
