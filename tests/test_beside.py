@@ -5,12 +5,13 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 from thermograsp import beside
 from thermograsp.beside import ALONE, start_beside, turn
+
+from .kernels import kernels, names
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="this system has no locks")
 
@@ -152,103 +153,64 @@ def test_none_is_started_where_it_would_not_help(
         start_beside(module, str(tmp_path))
 
 
-PLATES = """
-from thermograsp.envs.sensing.kernel import advance_grasps as step, advance_row, workspace
-inner, entries = [advance_row, workspace], []
-"""
-BOXES = """
-from thermograsp.envs.sensing.kernel import advance_boxes as step, advance_fixed, fixed_room
-from thermograsp.envs.sensing.places import strayed
-from thermograsp.thermal.batch import remembered, residues
-from thermograsp.thermal.kernels import axis, touched
-from thermograsp.thermal.numerics.passive_residues import _residues, free_residues
-inner = [advance_fixed, fixed_room]
-entries = [_residues, free_residues, strayed]
-entries += [residues._gram, residues._body, remembered._box_heat, remembered._warmth]
-entries += [touched._samples, touched._warmed, touched._beside, axis.free_kernels]
-"""
-FIELDS = """
-import importlib
-from thermograsp.envs.sensing import field_kernel
-from thermograsp.envs.sensing.kernel import meet_rows
-from thermograsp.thermal.numerics.passive_residues import _residues
-table = importlib.import_module("thermograsp.thermal.contact.curved_table")
-states = importlib.import_module("thermograsp.thermal.kernels.contact")
-step, inner = field_kernel.advance_fields, []
-entries = [_residues, states._element_states, states.rate_states, table._fill, table.begin_contacts]
-entries += [meet_rows, field_kernel.tell_fields, field_kernel.tell_temperatures]
-"""
+MET = {"gas_around", "footprint", "solid_conduction", "_reading", "measure_rows"}
+CASES = {
+    "compile_ahead": ({}, "kernel.advance_grasps", MET | {"advance_row", "workspace"}),
+    "compile_boxes_ahead": (
+        {"anywhere": True},
+        "kernel.advance_boxes",
+        MET
+        | {"advance_fixed", "fixed_room", "_pressed", "_under", "_beside", "strayed", "free_residues"}
+        | {"_gram", "_body", "_box_heat", "_warmth", "free_kernels"},
+    ),
+    "compile_fields_ahead": (
+        {"objects": "golf_ball"},
+        "",
+        {"advance_fields", "compiled_residues", "_element_states", "rate_states", "_fill", "begin_contacts"}
+        | {"meet_rows", "tell_fields", "tell_temperatures", "measure_rows"},
+    ),
+}
+"""By what compiles ahead: settings of the environment whose first step finds it, the function by which that step
+advances where it is compiled by the step itself, and some of what it is to find."""
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("function", "keywords", "needed", "steps"),
-    [
-        ("compile_ahead", {}, PLATES, "1"),
-        ("compile_boxes_ahead", {"anywhere": True}, BOXES, "1"),
-        ("compile_fields_ahead", {"objects": "golf_ball"}, FIELDS, "0"),
-    ],
-)
-def test_what_is_compiled_ahead_is_what_a_step_needs(
-    tmp_path: Path, function: str, keywords: dict[str, Any], needed: str, steps: str
-) -> None:
-    """The first step finds it, and senses the same bits as with code that this run's own tests have compiled, or any
-    before. steps: compiled by itself all the same, what advances a step."""
+@pytest.mark.parametrize("function", CASES)
+def test_what_is_compiled_ahead_is_what_a_step_needs(function: str) -> None:
+    """Of the same types, or it would be compiled in vain. Nothing has to be compiled anew to tell that."""
+    keywords, own, needed = CASES[function]
     step = f"""
-import hashlib
 import gymnasium, numpy as np, thermograsp
+from numba.core.caching import NullCache
 from thermograsp.envs.sensing import kernel
-from thermograsp.thermal.readout import measure_rows
-{needed}
+if {own!r}:
+    {own or "kernel"}._cache = NullCache()  # what is inside is looked for, as where this is on no disk yet
 env = gymnasium.make("thermograsp/Grasp-v0", **{keywords})
 env.reset(seed=0)
-total = hashlib.sha256()
 for _ in range(40):
-    observation = env.step(np.array([-1, 0, 0], np.float32))[0]
-    total.update(observation["voltage"].tobytes())
-inner += [kernel.gas_conduction, kernel.footprint, kernel.solid_conduction, kernel._reading]
-ahead = [one.called() for one in inner] + [measure_rows, *entries]
-missed = sum(sum(one.stats.cache_misses.values()) for one in ahead)
-print(missed, sum(step.stats.cache_misses.values()), total.hexdigest())
+    env.step(np.array([-1, 0, 0], np.float32))
 """
-    printed = []
-    for kept, code in (
-        (
-            {"NUMBA_CACHE_DIR": str(tmp_path)},
-            f"from thermograsp.envs.sensing import ahead; ahead.{function}()",
-        ),
-        ({}, ""),
-    ):
-        environment = {**os.environ, **kept, ALONE: "1"}
-        subprocess.run([sys.executable, "-c", code], env=environment, check=True)
-        done = subprocess.run(
-            [sys.executable, "-c", step], env=environment, check=True, capture_output=True, text=True
-        )
-        printed.append(done.stdout.split())
-    (missed, compiled, found), (_, _, alone) = printed
-    assert (missed, compiled, found) == ("0", steps, alone)
+    ahead = kernels(f"from thermograsp.envs.sensing import ahead; ahead.{function}()")
+    assert needed <= names(ahead)
+    missed = {line for line in kernels(step) - ahead if line.split()[3] in needed}
+    assert not missed
+    if own:
+        assert own.split(".")[1] not in names(ahead)
 
 
 @pytest.mark.slow
-def test_a_second_process_compiles_what_a_mesh_needs(tmp_path):
+def test_a_second_process_compiles_what_a_mesh_needs(tmp_path: Path) -> None:
     """A first mesh finds it, also what the mesh's networks are solved with."""
     mesh = """
 import gymnasium, numpy as np, thermograsp
-from thermograsp.thermal.meshes import patch, place, solve
-from thermograsp.thermal.surfaces import cut, rays
-from thermograsp.thermal.pressed import foundation
 env = gymnasium.make("thermograsp/Grasp-v0", objects="mug")
 env.reset(seed=0)
 env.step(np.array([-1, 0, 0], np.float32))
-ahead = [solve._factor, solve._iterate, solve._multiply, cut._accumulate, patch._pieces, place.within_cube]
-ahead += [rays.crossed_above, foundation.pressure_map]
-print(*(sum(one.stats.cache_misses.values()) for one in ahead))
 """
-    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "code"), ALONE: "1"}
-    environment["THERMOGRASP_CACHE"] = str(tmp_path / "networks")
+    needed = {"_factor", "_iterate", "_multiply", "_accumulate", "_pieces", "within_cube", "crossed_above"}
+    needed |= {"pressure_map"}
+    networks = {"THERMOGRASP_CACHE": str(tmp_path)}
     code = "from thermograsp.envs.sensing.mesh_ahead import compile_ahead; compile_ahead()"
-    subprocess.run([sys.executable, "-c", code], env=environment, check=True)
-    done = subprocess.run(
-        [sys.executable, "-c", mesh], env=environment, check=True, capture_output=True, text=True
-    )
-    assert set(done.stdout.split()) == {"0"}
+    ahead = kernels(code, **networks)
+    assert needed <= names(ahead)
+    assert not {line for line in kernels(mesh, **networks) - ahead if line.split()[3] in needed}

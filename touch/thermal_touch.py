@@ -56,7 +56,7 @@ from .scene import (
     warn_of_wide_faces,
     whole_steps,
 )
-from .watch import PadWatch
+from .watch import PadWatch, PinchWatch
 
 _NOBODY = object()
 """In place of an MjData. None would do for update(None) too."""
@@ -207,6 +207,7 @@ class ThermalTouch:
         self._heat.reset(range(count), self._first)
         self._rest(range(count))
         self._watch = PadWatch(self._pads, dt)
+        self._pinch = PinchWatch(self._pads, [shape.name for shape in self._shapes], dt)
         self._read(self._time)
 
     @property
@@ -253,8 +254,9 @@ class ThermalTouch:
 
         data: MjData, or of many worlds the recorded sensordata (W, substeps, sensors) or of one substep (W, sensors).
 
-        Where steps were taken without it, the contacts of the last of them stand for all. Called again at the same
-        time it changes nothing. Raises InvalidValueError for data of another model or of an earlier time, and
+        Where steps were taken without it, the contacts of the last of them stand for all. The first call counts one
+        step alone, unless `reset(data)` was called before the steps that it is to count. Called again at the same time
+        it changes nothing. Raises InvalidValueError for data of another model or of an earlier time, and
         SimulationError for forces that are not finite; of many worlds, those `failed` until they are reset."""
         if data is self._near:
             heard = self._hear_step(self._near_at)
@@ -657,6 +659,7 @@ class ThermalTouch:
     def _read(self, time: np.ndarray) -> None:
         self._reading = self._electronics.reading(time, self._reader.broken)
         self._watch.see(self._reading)
+        self._pinch.see(self._heat)
 
 
 def _numbers(chain: SignalChain, pad: PadPlace, sample: float) -> np.ndarray:

@@ -1,5 +1,5 @@
-"""Fingertips that are pressed where they feel nothing, which must be said: beside their pads alone, or on their pads
-beside the sensor."""
+"""What a scene may get wrong: fingertips that are pressed where they feel nothing, beside their pads alone or on their
+pads beside the sensor, and fingertips that meet through what they pinch."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from .heat import JoinedHeat
 from .readings import TouchReading
 from .scene import PadPlace
 
@@ -62,6 +63,35 @@ class PadWatch:
             f"pad's middle at ({_numbers(pad.position)}) m in its body's frame, or is as warm. To move the sensor, "
             "give Fingertip(name, position=(x, y, z), normal=(x, y, z), size=(y, z))"
         )
+
+
+class PinchWatch:
+    """Warns once of two fingertips that touch one another through an object that they press from both sides, where
+    contacts give way by more than it is thick. names: of the objects. dt: s between readings."""
+
+    def __init__(self, pads: Sequence[PadPlace], names: Sequence[str], dt: float) -> None:
+        self._labels, self._names = [pad.label for pad in pads], tuple(names)
+        self._each = max(round(_PATIENCE / dt), 1)
+        self._left: int = self._each
+        self._before: set[tuple[int, int, int]] = set()
+
+    def see(self, heat: JoinedHeat) -> None:
+        """To be called with every reading. What is there twice, as long apart as the watch's patience, is told."""
+        self._left -= 1
+        if self._left != 0 or len(self._labels) < 2:
+            return
+        self._left, found = self._each, heat.meeting_through()
+        again = sorted(found & self._before)
+        self._before = found
+        if again:
+            self._left = -1  # once is enough
+            one, other, o = again[0]
+            _warn(
+                f"fingertips {self._labels[one]!r} and {self._labels[other]!r} touch one another through "
+                f"{self._names[o]!r}, which they pinch: MuJoCo's contacts give way by more than it is thick, so that "
+                "they bear a part of each other's force and exchange heat. Exclude contacts between their bodies "
+                '(<contact><exclude body1="..." body2="..."/></contact>), or make contacts stiffer (solref)'
+            )
 
 
 def _numbers(vector: np.ndarray) -> str:

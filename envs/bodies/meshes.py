@@ -12,7 +12,7 @@ import numpy as np
 from thermograsp.compiled import compile_beside
 from thermograsp.errors import MeshError, MissingDependencyError, install, positive
 
-from ...thermal.contact import gas_conduction
+from ...thermal.contact import gas_around
 from ...thermal.surfaces import crossed_above
 from .mesh_files import FORMATS, read_surface
 
@@ -67,7 +67,7 @@ def load_mesh(path: str, scale: float = 1.0, pieces: int = 1) -> MeshShape:
     positive("scale", scale)
     if pieces < 1 or int(pieces) != pieces:
         raise MeshError(f"pieces {pieces}: give a whole number, 1 for the convex hull")
-    compile_beside("thermograsp.envs.sensing.mesh_ahead", gas_conduction.called(), crossed_above)
+    compile_beside("thermograsp.envs.sensing.mesh_ahead", gas_around.called(), crossed_above)
     surface = read_surface(str(path))
     mesh = trimesh.Trimesh(surface.vertices * scale, surface.faces, process=False)
     _check_size(path, mesh.extents, scale)

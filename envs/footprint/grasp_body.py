@@ -31,10 +31,8 @@ from ...thermal import (
 from ...thermal.contact import (
     CONTACT_LAW,
     TABLE_FORCES,
-    bare_footprint,
     bared,
     beside_face,
-    cylinder_footprint,
     element_joint,
     even_patch,
     face_joint,
@@ -42,9 +40,9 @@ from ...thermal.contact import (
     footprint,
     pad_joint,
     pad_law,
+    round_footprint,
     skinned,
     solid_conduction,
-    sphere_footprint,
     table_footprint,
 )
 from ..bodies import ObjectSpec
@@ -58,6 +56,7 @@ if TYPE_CHECKING:
 
 PAD = Pad()
 _FLAT = 0.9  # of what conducts as on a soft pad
+_MIDDLE = np.zeros(3)
 NOMINAL_FORCE = 10.0  # N, at which a curved object's patch is taken
 
 
@@ -284,15 +283,10 @@ class GraspBody:
     @cached_property
     def law(self) -> np.void:
         """Area and conductance by force and place, for compiled code; FOOTPRINT_LAW."""
-        if self._on_bare_face:
+        if self.contact_shape in ("cylinder", "sphere"):
             radius, length = self._round
-            return bare_footprint(
-                PAD, self._surface, radius, length if self.contact_shape == "cylinder" else None
-            )
-        if self.contact_shape == "cylinder":
-            return cylinder_footprint(self.pad, self.joint, *self._round)
-        if self.contact_shape == "sphere":
-            return sphere_footprint(self.pad, self.joint, self._round[0])
+            length = length if self.contact_shape == "cylinder" else None
+            return round_footprint(PAD, self.skin, self._surface, radius, length)
         if self.contact_shape == "flat":
             followed = self.mode == "T" and self.spec.shape == "box"
             return flat_footprint(self.pad, self.joint, self._face, self._across if followed else None)
@@ -305,13 +299,24 @@ class GraspBody:
     def _soft_or_rigid(self, contact: ContactArea, step: tuple[int, ...]) -> tuple[np.void, bool]:
         """A mesh's law, and whether it meets the bare face as one that does not yield."""
         soft = table_footprint(self.pad, self.joint, contact)
-        if not self._bare_mesh or self.closed_mesh is None:
+        if self.closed_mesh is None:
+            return soft, False
+        if self.skin is not None:
+            # the tables tell how much more or less its contact and the gas conduct than what touches does by itself;
+            # where the pads close, that is known more exactly than from them
+            seen = table_footprint(self.pad, self.joint, self.closed_mesh.seen_at(step))
+            through = self.closed_mesh.conducts_at(step, self.skin, self.touched)
+            solid, same = (_table_conduction(law) for law in (soft, seen))
+            through = np.where(same > 0, solid * through / np.where(same > 0, same, 1.0), through)
+            borne = contact.face_force > 0
+            if borne.any():
+                soft["conducts"] = np.interp(TABLE_FORCES, contact.face_force[borne], through[borne])
+            return soft, False
+        if not self._bare_mesh:
             return soft, False
         conducts, area = self.closed_mesh.bare_at(step, self.touched)
         rigid = table_footprint(self.pad, self.joint, replace(contact, face=area), conducts)
-        of_soft, of_rigid = (
-            solid_conduction(law, *footprint(law, NOMINAL_FORCE, np.zeros(3))) for law in (soft, rigid)
-        )
+        of_soft, of_rigid = (float(_table_conduction(law, (NOMINAL_FORCE,))[0]) for law in (soft, rigid))
         # a flat face meets the rigid one flush with the pad, whose areas and forces tell more exactly what conducts
         return (rigid, True) if of_rigid < _FLAT * of_soft else (soft, False)
 
@@ -446,3 +451,9 @@ class GraspBody:
             return np.inf
         soft = self._contact(PAD, np.array(NOMINAL_FORCE), (0.0, self._up))
         return self.touched.crushing_stress * float(soft.pad)
+
+
+def _table_conduction(law: np.void, forces: Sequence[float] | np.ndarray = TABLE_FORCES) -> np.ndarray:
+    """W/K at these forces N on the pad of a table's areas under what they bear."""
+    touches = (footprint(law, force, _MIDDLE) for force in forces)
+    return np.array([solid_conduction(law, *each, _MIDDLE, 0.0, 0.0) for each in touches])

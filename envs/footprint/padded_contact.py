@@ -31,7 +31,7 @@ from ...thermal.contact import (
     curved_touch,
     flat_patch,
     footprint,
-    gas_conduction,
+    gas_around,
     solid_conduction,
 )
 from ...thermal.padded import RINGS, ring_sides
@@ -110,7 +110,7 @@ def touch_pads(law, beside, tables, rings, lying, halves, normal, place, touches
                     through[ring], areas[ring], _ = curved_contact(tables[1 + ring], force, aside, at[2])
             elif law[0].shape == TABLE:
                 area, load = footprint(law[0], force, at)
-                conducts = solid_conduction(law[0], area, load)
+                conducts = solid_conduction(law[0], area, load, at, 0.0, 0.0)
                 step = min(max((math.log(force) - _FIRST) / _STEP, 0.0), len(lying) - 1.0)
                 k = min(int(step), len(lying) - 2)
                 for side in range(4):
@@ -121,10 +121,11 @@ def touch_pads(law, beside, tables, rings, lying, halves, normal, place, touches
                 long = (lying[k, 0] + (step - k) * (lying[k + 1, 0] - lying[k, 0])) * math.sqrt(area)
                 for ring in range(len(halves)):
                     areas[ring], load = footprint(rings[ring], force, at)
-                    through[ring] = solid_conduction(rings[ring], areas[ring], load)
+                    through[ring] = solid_conduction(rings[ring], areas[ring], load, at, 0.0, 0.0)
             else:
                 area, load = footprint(law[0], force, at)
-                conducts = solid_conduction(law[0], area, load) + gas_conduction(law[0], force, at)
+                gas, spread = gas_around(law[0], force, at)
+                conducts = solid_conduction(law[0], area, load, at, gas, spread) + gas
                 long = 0.0
                 if area > 0.0:
                     long = flat_patch(law[0], area, at, 2 * law[0].half_face, shares)

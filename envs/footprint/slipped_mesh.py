@@ -85,6 +85,16 @@ class ClosedMesh:
         through, area = (np.exp(np.interp(*_LOADS, np.log(np.maximum(column, _LEAST)))) for column in mean.T)
         return np.where(through > 2 * _LEAST, through, 0.0), np.where(area > 2 * _LEAST, area, 0.0)
 
+    def seen_at(self, step: tuple[int, ...]) -> ContactArea:
+        """What touches at TABLE_FORCES, (9,) each, as conducts_at has it."""
+        area, share = self._area_and_share(step, _TOUCHED)
+        return ContactArea(area, area, share * TABLE_FORCES)
+
+    def conducts_at(self, step: tuple[int, ...], skin: Skin, body: Material) -> np.ndarray:
+        """(9,) W/K at TABLE_FORCES of a face with that skin on a mesh of that material, with the gas beside what
+        touches. step: as contact_at's."""
+        return np.interp(*_LOADS, self._of_views(step, _Asked(body, skin, conducts=True))[:, 0])
+
     def widened(self, step: tuple[int, ...], skin: Skin, body: Material) -> np.ndarray:
         """(9,) at TABLE_FORCES: how much wider the patch that stands for what conducts is than what touches, of a face
         with that skin on a mesh of that material. step: as contact_at's."""

@@ -208,12 +208,13 @@ def _add_gas(law, pressure, cells):
         return
     y, z = y / force, z / force
     line = law.shape == CYLINDER
-    touched, load = footprint(law, force, np.array([0.0, y, 0.0 if line else z]))
+    place = np.array([0.0, y, 0.0 if line else z])
+    touched, load = footprint(law, force, place)
     half_width = touched / (4 * half)
     square = half_width * half_width if line else touched / np.pi
     total = cells.sum() * side * side
     bare = law.modulus > 0.0
-    share = solid_conduction(law, touched, load) / total if bare and total > 0.0 else 1.0
+    share = solid_conduction(law, touched, load, place, 0.0, 0.0) / total if bare and total > 0.0 else 1.0
     for i in range(CELLS):
         for j in range(CELLS):
             if cells[i, j] > 0.0 and not bare:

@@ -33,7 +33,7 @@ from ...thermal.contact import (
     beside_face,
     curved_table,
     footprint,
-    gas_conduction,
+    gas_around,
     solid_conduction,
 )
 from ...thermal.kernels import (
@@ -66,11 +66,11 @@ def start_compiling(boxes: bool, fields: bool = False) -> None:
     if fields:
         from .field_kernel import advance_fields  # nothing that fields need is loaded without them
 
-        compile_beside(__name__, gas_conduction.called(), advance_fields, by="compile_fields_ahead")
+        compile_beside(__name__, gas_around.called(), advance_fields, by="compile_fields_ahead")
     elif boxes:
-        compile_beside(__name__, gas_conduction.called(), advance_fixed, by="compile_boxes_ahead")
+        compile_beside(__name__, gas_around.called(), advance_fixed, by="compile_boxes_ahead")
     else:
-        compile_beside(__name__, gas_conduction.called(), advance_row)
+        compile_beside(__name__, gas_around.called(), advance_row)
 
 
 def compile_ahead() -> None:
@@ -100,7 +100,7 @@ def compile_fields_ahead() -> None:
 def compile_boxes_ahead() -> None:
     """The same for boxes whose networks come from heat kernels. First what no first process is compiling at that time;
     the kernels come from it."""
-    port_residues(np.ones((2, 2)), np.ones((2, 1, 1)), np.ones(2))
+    compile_tip_states()
     _contacts()
     _advance(advance_fixed, no_fixed_tables(0.01), 1, _made_by(fixed_room, types.int64))
     compile_measuring()
@@ -126,9 +126,9 @@ def compile_boxes_ahead() -> None:
 def _contacts() -> None:
     """The laws of contact."""
     law = numba.from_dtype(FOOTPRINT_LAW)
-    _made_by(gas_conduction, law, types.float64, _VECTOR)
+    _made_by(gas_around, law, types.float64, _VECTOR)
     _made_by(footprint, law, types.float64, _VECTOR)
-    _made_by(solid_conduction, law, types.float64, types.float64)
+    _made_by(solid_conduction, law, types.float64, types.float64, _VECTOR, types.float64, types.float64)
     pad = types.NestedArray(types.float64, (1,))
     _made_by(beside_face, numba.from_dtype(CONTACT_LAW), pad, types.float64, _VECTOR, _VECTOR)
 

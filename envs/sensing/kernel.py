@@ -24,7 +24,7 @@ from ...thermal.batch import (
     forget_fixed,
     forget_row,
 )
-from ...thermal.contact import FLAT, beside_face, footprint, gas_conduction, solid_conduction
+from ...thermal.contact import FLAT, beside_face, footprint, gas_around, solid_conduction
 from ...thermal.matter import reservoir_step, reservoir_temperature
 from ...thermal.network import NODE, workspace
 from ...thermal.numerics import FAST
@@ -296,11 +296,13 @@ def _mean_contacts(law, normal, step, f, place, conductances):
         if normal[s] > 0:
             force += normal[s]
             pressing += 1
-    gas = gas_conduction(law, force / pressing, place) if pressing else 0.0  # changes little with the force
+    gas, spread = 0.0, 0.0
+    if pressing:  # they change little with the force
+        gas, spread = gas_around(law, force / pressing, place)
     for s in range(substeps):
         if normal[s] > 0:
             face, load = footprint(law, normal[s], place)
-            conducts = solid_conduction(law, face, load) + gas
+            conducts = solid_conduction(law, face, load, place, gas, spread) + gas
             if conducts > 0:
                 total += conducts
                 area += face

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from thermograsp.errors import celsius
+from thermograsp.errors import InvalidValueError, celsius, whole_number
 
 from ..errors import (
     CommandRefusedError,
@@ -45,6 +45,7 @@ from .link import Link, LinkSettings, Tap
 _POLL = 0.02  # s that a read waits at most
 _SELF_TEST_WITHIN = 2.5  # s
 _JOIN_WITHIN = 5.0  # s
+_FASTEST = 0xFFFF  # Hz that the protocol can ask for
 _ALIVE_EVERY = 2.0  # s; the device waits for 10
 _HOPELESS = (WrongDeviceError, ProtocolVersionError)  # opening the port again does not help
 
@@ -96,7 +97,8 @@ class Fingertips:
     is repaired.
 
     Errors of the line are raised by `take`, `wait` and the commands as long as they last; samples go on when it is
-    repaired. Raises PortError, NoAnswerError, WrongDeviceError, ProtocolVersionError when it cannot be opened.
+    repaired. Raises PortError, NoAnswerError, WrongDeviceError, ProtocolVersionError when it cannot be opened, and
+    InvalidValueError for a rate or a setpoint that cannot be.
     """
 
     def __init__(
@@ -116,7 +118,7 @@ class Fingertips:
         )
         self._settings = settings or LinkSettings()
         self._clock = clock
-        self._rate = rate
+        self._rate = _samples_a_second(rate)
         held = None if setpoint is None else celsius("setpoint (°C)", setpoint)
         self._wish = _Wish(None if held is None else (held, held))
         self._held: _Wish | None = None  # what the device has confirmed
@@ -178,7 +180,8 @@ class Fingertips:
         return self._taken()
 
     def set_rate(self, rate: int) -> None:
-        """Samples a second, 0 to stop."""
+        """Samples a second, 0 to stop. Raises InvalidValueError for what is no whole number from 0 on."""
+        rate = _samples_a_second(rate)
         with self._commanding:
             self._link.command(SetRate(rate))
         self._silent_since = self._clock()  # first: the reader looks at both
@@ -398,6 +401,13 @@ class Fingertips:
             error if isinstance(error, DeviceError) else DeviceError(f"the reader broke: {error!r}")
         )
         self._link.close()
+
+
+def _samples_a_second(rate: object) -> int:
+    count = whole_number("rate (samples a second)", rate)
+    if count > _FASTEST:
+        raise InvalidValueError(f"rate must be {_FASTEST} samples a second at most, got {rate}")
+    return count
 
 
 def _after_failure(before: Pair | None, requested: Pair) -> Pair | None:

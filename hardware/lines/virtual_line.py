@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections import deque
 from typing import Generic
 
+from thermograsp.errors import non_negative
+
 from .emulated import Device
 
 
@@ -35,8 +37,9 @@ class VirtualLine(Generic[Device]):
         return self
 
     def advance(self, seconds: float) -> None:
-        """Lets time go on; what the device sends meanwhile waits to be read."""
-        self._until(self._now + seconds)
+        """Lets time go on; what the device sends meanwhile waits to be read. Raises InvalidValueError for a time that
+        does not go on."""
+        self._until(self._now + non_negative("seconds", seconds))
 
     def read(self, timeout: float) -> bytes:
         """See Transport."""

@@ -39,7 +39,11 @@ class SessionCounts:
 
 
 class Session:
-    """Decodes, numbers, dates and sorts what a device sends. kept: samples that wait to be taken, at most."""
+    """Decodes, numbers, dates and sorts what a device sends. kept: samples that wait to be taken, at most.
+
+    A line keeps its order: what comes after it was opened and before the first answer to this host may be old, kept by
+    an adapter, a system or a busy sender. Such samples are dropped, and such times do not count for the clock.
+    """
 
     def __init__(self, kept: int = 100_000) -> None:
         self.decoder = Decoder()
@@ -52,6 +56,7 @@ class Session:
         self.last_sample: float | None = None
         self.flags = Flag(0)
         self.boots: int | None = None  # of the device, as it said last
+        self._answered = True  # since the line was opened
         self._sequence: int | None = None
         self._device: float | None = None
         self._host = 0.0
@@ -62,9 +67,11 @@ class Session:
         """The next frame may have any number: the line was opened, or the device may have started anew."""
         self._sequence = None
 
-    def reopened(self) -> None:
-        """The line was closed and is open again: half a frame may be missing, and any number of them."""
+    def reopened(self, answers: bool = True) -> None:
+        """The line was closed and is open again: half a frame may be missing, and any number of them. answers: False
+        where what this host asks may be missing too, so that no answer can be waited for."""
         self.decoder.feed(b"\0")
+        self._answered = not answers
         self.renumber()
 
     def receive(self, data: bytes, now: float) -> None:
@@ -86,9 +93,13 @@ class Session:
         self.unidentified = unidentified
         self.flags = Flag(frame.flags)
         self._sequence, self._device, self._host = frame.sequence, device, now
-        self.clock.add(device, now)
+        if isinstance(message, Acknowledgement) and message.command in self.awaited:
+            self._answered = True
+        if self._answered:
+            self.clock.add(device, now)
         if message is None:
-            self._sample(frame, device, now)
+            if self._answered:
+                self._sample(frame, device, now)
             return
         self.reports[type(message)] = (now, message)
         if isinstance(message, Acknowledgement):

@@ -62,7 +62,7 @@ def replay(path: str | os.PathLike[str]) -> Replay:
         elif entry.kind == EVENT:
             events.append((entry.time, entry.data.decode(errors="replace")))
             if events[-1][1] == OPENED:
-                session.reopened()
+                session.reopened(answers=not recording.damage)
         found = session.reports.get(Calibration)
         if found is not None and isinstance(found[1], Calibration) and found[1] != calibration:
             parts.append(_taken(session, calibration))

@@ -30,7 +30,7 @@ from thermograsp.thermal.contact import conductance, conduction, even_patch, foo
 from thermograsp.thermal.matter import skin as dressed
 
 TIMES = np.array([0.5, 1.0, 2.0, 4.0])
-CASES = ((0.02, 10.0), (0.02, 1.0), (0.005, 10.0), (0.05, 10.0))
+CASES = ((0.02, 10.0), (0.02, 1.0), (0.02, 0.01), (0.005, 10.0), (0.005, 0.01), (0.05, 10.0), (0.05, 0.01))
 """(radius m, force N)"""
 CYLINDERS = ((0.02, 0.05), (0.02, 1.0), (0.02, 5.0), (0.02, 20.0), (0.02, 60.0))
 DIFFERENCE = 12.0  # K

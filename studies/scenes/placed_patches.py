@@ -63,7 +63,7 @@ Span = tuple[float, float]
 @dataclass(frozen=True, slots=True)
 class Case:
     """A rectangle on the sensor's face: y and z m from its middle, W/(m2 K), and the y m of the block's middle; along z
-    all is symmetric. skin: of the fingertip. thick: m, of the block."""
+    all is symmetric. skin: of the fingertip. thick, breadth: m, of the block, along x and y."""
 
     y: Span
     half_z: float
@@ -71,6 +71,7 @@ class Case:
     block: float
     skin: str | None = "filled_silicone"
     thick: float = SIDE
+    breadth: float = SIDE
 
 
 _H = 0.0045
@@ -95,15 +96,21 @@ CASES = {
     "narrow pad": Case((-0.003, 0.003), 0.003, 2.5e5, 0.0),
     "half of a narrow pad": Case((-0.003, 0.0), 0.003, 2.5e5, -SIDE / 2),
     "ball on a wall of 0.6 mm": Case((-0.0014, 0.0014), 0.0014, 5e5, 0.0, thick=0.0006),
+    "bar of 8 mm": Case((-0.004, 0.004), _H, 2e5, 0.0, breadth=0.008),
+    "bar of 8 mm, 1 mm aside": Case((-0.003, _H), _H, 2.1e5, 0.001, breadth=0.008),
+    "bar of 8 mm, 2 mm aside": Case((-0.002, _H), _H, 2.2e5, 0.002, breadth=0.008),
+    "bar of 8 mm, 4 mm aside": Case((0.0, _H), _H, 2.5e5, 0.004, breadth=0.008),
+    "bar of 9 mm, 2.5 mm aside": Case((-0.002, _H), _H, 2.2e5, 0.0025, breadth=0.009),
+    "bar of 5 mm, 3 mm aside": Case((0.0005, _H), _H, 2.4e5, 0.003, breadth=0.005),
 }
 
 
 @lru_cache
-def touch_on(made_of: str, skin: str | None, thick: float) -> ThermalTouch:
+def touch_on(made_of: str, skin: str | None, thick: float, breadth: float) -> ThermalTouch:
     """Of a fingertip above a block that looks down."""
     model = mujoco.MjModel.from_xml_string(f"""
       <mujoco><worldbody>
-        <body name="block"><geom name="block" type="box" size="{SIDE / 2} {SIDE / 2} {thick / 2}"/></body>
+        <body name="block"><geom name="block" type="box" size="{breadth / 2} {SIDE / 2} {thick / 2}"/></body>
         <body name="tip" pos="0 0 .1"><geom name="tip" type="box" size=".01 .01 .004"/></body>
       </worldbody></mujoco>""")
     tip = Fingertip("tip", (0, 0, -0.004), (0, 0, -1), (0.02, 0.02), temperature=WARM, skin=skin)
@@ -114,7 +121,7 @@ def touch_on(made_of: str, skin: str | None, thick: float) -> ThermalTouch:
 
 def by_network(case: Case, made_of: str) -> tuple[float, ...]:
     """K of drop after TIMES."""
-    touch = touch_on(made_of, case.skin, case.thick)
+    touch = touch_on(made_of, case.skin, case.thick, case.breadth)
     width = touch._pads[0].stack.width
     heat = JoinedHeat(
         touch._pads, (), touch._shapes, worlds=1, dt=0.01, tolerance=0.05, film=0.0, ambient=COOL
@@ -125,7 +132,7 @@ def by_network(case: Case, made_of: str) -> tuple[float, ...]:
     row = touches[0, 0, 0]
     row[[CONDUCTANCE, CLOSED, AREA, LENGTH]] = case.conductance * area, 1.0, area, area * long
     row[ASIDE] = area * patch_offset(abs(middle), broad, width)
-    row[ENDS] = area * patch_ends(middle - case.block, case.block, broad, SIDE, width)
+    row[ENDS] = area * patch_ends(middle - case.block, case.block, broad, case.breadth, width)
     row[PLACE : PLACE + 3], row[NORMAL : NORMAL + 3] = (-case.block, 0.0, case.thick / 2), (0.0, 0.0, -1.0)
     found = []
     for n in range(1, round(TIMES[-1] / 0.01) + 1):
@@ -147,59 +154,89 @@ def _beside(start: float, end: float, count: int, first: float) -> np.ndarray:
     return lines(start, end, count, first)[1:] if abs(end - start) > 1e-9 else np.zeros(0)
 
 
-def _lines_of(low: float, high: float, patch: Span, refine: float) -> tuple[np.ndarray, int]:
-    """Of an axis from low to high with a patch, and the number of the patch's first cell."""
-    first = min(1.2e-4, (patch[1] - patch[0]) / 12) / refine
-    within = _both(*patch, 2 * round(5 * refine), first)
-    left = _beside(patch[0], low, round(9 * refine), first)[::-1]
-    return np.concatenate((left, within, _beside(patch[1], high, round(9 * refine), first))), len(left)
+def _lines_of(
+    low: float, high: float, patches: Sequence[Span], refine: float
+) -> tuple[np.ndarray, list[int]]:
+    """Of an axis from low to high with patches, and the numbers of the patches' first cells."""
+    first = min(1.2e-4, *((end - start) / 12 for start, end in patches)) / refine
+    found, starts = _beside(patches[0][0], low, round(9 * refine), first)[::-1], []
+    for n, patch in enumerate(patches):
+        starts.append(len(found))
+        following = patches[n + 1][0] if n + 1 < len(patches) else None
+        between = _beside(patch[1], high, round(9 * refine), first)
+        if following is not None:
+            apart = following - patch[1] > 1e-9
+            between = _both(patch[1], following, 2 * round(5 * refine), first)[1:-1] if apart else np.zeros(0)
+        within = _both(*patch, 2 * round(5 * refine), first)
+        if following is not None and following - patch[1] <= 1e-9:
+            within = within[:-1]
+        found = np.concatenate((found, within, between))
+    return found, starts
 
 
 def by_volumes(case: Case, made_of: str, refine: float) -> tuple[float, ...]:
     """K of drop after TIMES in half of both bodies."""
-    stack, matter = touch_on(made_of, case.skin, case.thick)._pads[0].stack, material(made_of)
-    half = stack.width / 2
-    first = min(1.2e-4, case.half_z / 6) / refine
-    patch_z = case.half_z - lines(0.0, case.half_z, round(5 * refine), first)[::-1]
-    grids, starts = [], []
-    for low, high, deep_z in ((-half, half, half), (case.block - SIDE / 2, case.block + SIDE / 2, SIDE / 2)):
-        y, start = _lines_of(low, high, case.y, refine)
-        grids.append((y, np.concatenate((patch_z, _beside(case.half_z, deep_z, round(9 * refine), first)))))
-        starts.append(start)
+    stack = touch_on(made_of, case.skin, case.thick, case.breadth)._pads[0].stack
+    patch = Patch(case.y, case.block, case.conductance, made_of, case.thick, case.breadth)
+    return volumes_of(stack, [patch], case.half_z, refine)
+
+
+@dataclass(frozen=True, slots=True)
+class Patch:
+    """On the sensor's face, as a Case has it, of a block of that material."""
+
+    y: Span
+    block: float
+    conductance: float
+    made_of: str
+    thick: float = SIDE
+    breadth: float = SIDE
+
+
+def volumes_of(
+    stack: SensorStack, patches: Sequence[Patch], half_z: float, refine: float
+) -> tuple[float, ...]:
+    """K of drop after TIMES of a sensor on patches that do not overlap, in order along y."""
+    first = min(1.2e-4, half_z / 6) / refine
+    patch_z = half_z - lines(0.0, half_z, round(5 * refine), first)[::-1]
+    z_of = lambda deep: np.concatenate((patch_z, _beside(half_z, deep, round(9 * refine), first)))  # noqa: E731
+    wide, across, half = 2 * round(5 * refine), len(patch_z) - 1, stack.width / 2
+    y, starts = _lines_of(-half, half, [patch.y for patch in patches], refine)
     x, k, c = [np.zeros(1)], [], []
     for layer in stack.layers[::-1]:
         count = max(round(refine * layer.thickness / 2e-4), round(3 * refine))
         x.append(x[-1][-1] + np.linspace(0.0, layer.thickness, count + 1)[1:])
         k += [layer.conductivity] * count
         c += [layer.volumetric_heat_capacity] * count
-    tip = body(Grid((np.concatenate(x), *grids[0]), np.array(k), np.array(c), held=WARM - COOL))
-    deep = lines(0.0, case.thick, round(14 * refine), min(1e-4, case.thick / 15) / refine)
-    count = len(deep) - 1
-    grid = (deep, *grids[1])
-    block = body(
-        Grid(
-            grid,
-            np.full(count, matter.conductivity),
-            np.full(count, matter.volumetric_heat_capacity),
+    tip = body(Grid((np.concatenate(x), y, z_of(half)), np.array(k), np.array(c), held=WARM - COOL))
+    bodies, total, joins, above, below = [tip], len(tip.capacity), [], [], []
+    for patch, start in zip(patches, starts, strict=True):
+        matter = material(patch.made_of)
+        deep = lines(0.0, patch.thick, round(14 * refine), min(1e-4, patch.thick / 15) / refine)
+        ends = patch.block - patch.breadth / 2, patch.block + patch.breadth / 2
+        along, (first_cell,) = _lines_of(*ends, [patch.y], refine)
+        alike = np.ones(len(deep) - 1)
+        block = body(
+            Grid(
+                (deep, along, z_of(SIDE / 2)),
+                matter.conductivity * alike,
+                matter.volumetric_heat_capacity * alike,
+            )
         )
-    )
-    wide, across = 2 * round(5 * refine), len(patch_z) - 1
-    above, below = (
-        np.arange(len(each.capacity)).reshape(each.grid.shape)[0, start : start + wide, :across].ravel()
-        for each, start in zip((tip, block), starts, strict=True)
-    )
-    y, z = grids[0]
-    areas = np.outer(np.diff(y)[starts[0] : starts[0] + wide], np.diff(z)[:across]).ravel()
-    resist = tip.grid.edges[0][1] / (2 * tip.grid.k[0]) + deep[1] / (2 * matter.conductivity)
-    joins = areas / (1 / case.conductance + resist)
-    below = below + len(tip.capacity)
-    total = len(tip.capacity) + len(block.capacity)
-    coupled = sparse.csr_matrix((joins, (above, below)), shape=(total, total))
+        areas = np.outer(np.diff(y)[start : start + wide], np.diff(patch_z)).ravel()
+        resist = tip.grid.edges[0][1] / (2 * tip.grid.k[0]) + deep[1] / (2 * matter.conductivity)
+        joins.append(areas / (1 / patch.conductance + resist))
+        above.append(_front(tip.grid, start, wide, across))
+        below.append(total + _front(block.grid, first_cell, wide, across))
+        bodies.append(block)
+        total += len(block.capacity)
+    placed = np.concatenate(above), np.concatenate(below)
+    coupled = sparse.csr_matrix((np.concatenate(joins), placed), shape=(total, total))
     coupled = coupled + coupled.T
-    matrix = sparse.block_diag([tip.conduction, block.conduction]) - coupled
+    matrix = sparse.block_diag([each.conduction for each in bodies]) - coupled
     matrix = (matrix + sparse.diags(np.asarray(coupled.sum(axis=1)).ravel())).tocsr()
-    capacity = np.concatenate((tip.capacity, block.capacity))
-    source = np.concatenate((tip.source, block.source))
+    capacity = np.concatenate([each.capacity for each in bodies])
+    source = np.concatenate([each.source for each in bodies])
     state = np.zeros(total)
     state[: len(tip.capacity)] = WARM - COOL
     row, found, now = _drop(tip.grid, stack), [], 0.0
@@ -216,6 +253,12 @@ def by_volumes(case: Case, made_of: str, refine: float) -> tuple[float, ...]:
             if any(abs(now - time) < 1e-9 for time in TIMES):
                 found.append(float(row @ state[: len(tip.capacity)]))
     return tuple(found)
+
+
+def _front(grid: Grid, start: int, wide: int, across: int) -> np.ndarray:
+    """The cells of its face from number start along y on, of which so many are in a patch."""
+    cells = np.arange(math.prod(grid.shape)).reshape(grid.shape)
+    return cells[0, start : start + wide, :across].ravel()
 
 
 def extrapolated(coarse: np.ndarray, fine: np.ndarray) -> np.ndarray:

@@ -117,3 +117,79 @@ def test_round_pads_on_ellipsoids_touch_as_in_numpy(kind: Kind) -> None:
     for found, expected in zip(touched(*map(kind.of, numbers)), touched(*numbers), strict=True):
         assert np.isfinite(expected).all()
         np.testing.assert_allclose(np.asarray(found), expected, rtol=1e-9)
+
+
+@pytest.mark.parametrize("count", [2, 3, 5])
+def test_several_objects_under_one_fingertip_are_numpy_s(kind: Kind, count: int) -> None:
+    """Of five the four largest share its face."""
+    edges = np.concatenate(([-0.02], np.linspace(-0.0035, 0.003, count - 1), [0.02]))
+    blocks = "".join(
+        f'<body name="{n}" pos="{(low + high) / 2} 0 -.02"><geom type="box" size="{(high - low) / 2} .02 .02"/></body>'
+        for n, (low, high) in enumerate(zip(edges[:-1], edges[1:], strict=True))
+    )
+    spec = mujoco.MjSpec.from_string(f"""
+    <mujoco><option gravity="0 0 0"/><worldbody>{blocks}<body name="tip" pos="0 0 .0041">
+      <joint type="slide" axis="0 0 -1" damping="20"/><geom type="box" size=".01 .01 .004" mass=".1"/></body>
+    </worldbody></mujoco>""")
+    objects = dict(
+        zip(map(str, range(count)), ("aluminium", "wood", "glass", "copper", "steel"), strict=False)
+    )
+    model, tips = prepare(spec, {"tip": "tip"}, objects), {"tip": "tip"}
+    touch = ThermalTouch(model, fingertips=tips, objects=objects, worlds=1, dt=0.02, chain="ideal")
+    exact, fixed = touch.fixed_touch(like=np.zeros(0)), touch.fixed_touch(like=kind.float64)
+    data, state, expected = mujoco.MjData(model), fixed.start(), exact.start()
+    step, drop = (
+        kind.compiled(lambda state, record: fixed.advance(state, fixed.contacts(record))),
+        np.zeros(1),
+    )
+    for _ in range(15):
+        record = np.empty((1, fixed.substeps, model.nsensordata))
+        for k in range(fixed.substeps):
+            data.qfrc_applied[:] = 8.0
+            mujoco.mj_step(model, data)
+            record[0, k] = data.sensordata
+        state, reading = step(state, kind.of(record))
+        expected, right = exact.advance(expected, exact.contacts(record))
+        drop = right.temperature_drop
+        np.testing.assert_allclose(np.asarray(reading.temperature_drop), drop, rtol=0, atol=1e-10)
+    assert drop[0] > 0.5
+
+
+def test_derivatives_are_finite_where_an_object_is_not_touched(torch_kind: Kind) -> None:
+    torch = torch_kind.xp
+    objects = {"near": "aluminium", "far": "wood"}
+    spec = mujoco.MjSpec.from_string("""
+    <mujoco><option gravity="0 0 0"/><worldbody>
+      <body name="near"><geom type="box" size=".02 .02 .02"/></body>
+      <body name="far" pos=".1 0 0"><geom type="box" size=".02 .02 .02"/></body>
+      <body name="tip" pos="0 0 .0241"><joint type="slide" axis="0 0 -1" damping="20"/>
+        <geom type="box" size=".01 .01 .004" mass=".1"/></body></worldbody></mujoco>""")
+    model, tips = prepare(spec, {"tip": "tip"}, objects), {"tip": "tip"}
+    touch = ThermalTouch(model, fingertips=tips, objects=objects, worlds=1, dt=0.02, chain="ideal")
+    fixed, data = touch.fixed_touch(like=torch_kind.float64), mujoco.MjData(model)
+    pairs = [name for name in (model.sensor(n).name for n in range(model.nsensor)) if "frame" not in name]
+    forces = np.zeros(model.nsensordata)
+    for name in pairs:
+        forces[model.sensor(name).adr[0] + 1 : model.sensor(name).adr[0] + 4] = 1.0
+    records = []
+    for _ in range(10):
+        record = np.empty((1, fixed.substeps, model.nsensordata))
+        for k in range(fixed.substeps):
+            data.qfrc_applied[:] = 8.0
+            mujoco.mj_step(model, data)
+            record[0, k] = data.sensordata
+        records.append(torch.tensor(record))
+
+    def drop(factor):
+        state, reading = fixed.start(), None
+        for record in records:
+            scale = 1 + (factor - 1) * torch.tensor(forces)
+            state, reading = fixed.advance(state, fixed.contacts(record * scale))
+        return reading.temperature_drop.sum()  # pyright: ignore[reportOptionalMemberAccess]
+
+    factor = torch.ones(1, dtype=torch.float64, requires_grad=True)
+    drop(factor).backward()
+    with torch.no_grad():
+        expected = float(drop(1 + 1e-5) - drop(1 - 1e-5)) / 2e-5
+    assert expected > 1e-3
+    assert float(factor.grad) == pytest.approx(expected, rel=1e-4)

@@ -19,6 +19,7 @@ from thermograsp.hardware import (
 from thermograsp.hardware.errors import DeviceError
 
 PATIENCE = 1.0  # s, in which a fault is repaired or told
+COMING = 10.0  # s, in which samples come that are due, also where the machine is busy
 QUICK = LinkSettings(open_within=0.7, stale_after=0.25, reopen_every=0.02)
 
 

@@ -25,7 +25,7 @@ from thermograsp.hardware import (
 )
 from thermograsp.hardware.protocol.messages import KeepAlive, SetSetpoint
 
-from .serving import driver, error_within, healthy_within, nothing_left, serving
+from .serving import COMING, driver, error_within, healthy_within, nothing_left, serving
 from .test_fingertips import attended, lockstep, ramp
 
 OFF = pytest.approx((np.nan, np.nan), nan_ok=True)
@@ -96,7 +96,7 @@ def test_a_host_that_was_asleep_heats_again(tmp_path: Path) -> None:
     """The driver sends the setpoint again, as after a reconnect."""
     pytest.importorskip("serial")
     with nothing_left(), serving(tmp_path) as served, driver(served, setpoint=36.0) as tips:
-        tips.wait(5, 1.0)
+        tips.wait(5, COMING)
         with served.paused():
             served.device._alive_at -= 20.0  # as if nothing had come for so long
         deadline = time.monotonic() + 3.0
@@ -135,14 +135,14 @@ def test_a_restart_while_unplugged_is_seen(tmp_path: Path) -> None:
     with nothing_left(), serving(tmp_path, EmulatedFingertips(ramp)) as served:
         time.sleep(1.0)  # the device's clock is ahead
         with driver(served, setpoint=36.0) as tips:
-            before = tips.wait(50, 2.0)
+            before = tips.wait(50, COMING)
             served.unplug()
             error_within(tips.take, LinkLostError)
             with served.paused():
                 served.device.reboot(Reset.BROWN_OUT)
             served.plug()
             healthy_within(tips)
-            after = tips.wait(50, 2.0)
+            after = tips.wait(50, COMING)
             assert tips.statistics().reboots == 1
             assert after.device_time[0] < before.device_time[-1]
             assert (np.diff(after.time) > 1e-3).all() and after.time[0] > before.time[-1]
@@ -155,7 +155,7 @@ def test_a_restart_while_unplugged_is_seen(tmp_path: Path) -> None:
 def test_off_that_failed_is_not_followed_by_heating(tmp_path: Path, how: str) -> None:
     pytest.importorskip("serial")
     with nothing_left(), serving(tmp_path) as served, driver(served, setpoint=36.0) as tips:
-        tips.wait(5, 1.0)
+        tips.wait(5, COMING)
         if how == "unplugged":
             served.unplug()
         else:

@@ -33,6 +33,7 @@ from thermograsp.hardware import (
 from thermograsp.hardware.protocol.messages import SetRate, SetSetpoint
 
 from .serving import (
+    COMING,
     PATIENCE,
     QUICK,
     driver,
@@ -143,7 +144,7 @@ def test_wrong_version(tmp_path: Path, version: tuple[int, int]) -> None:
 
 def test_unplugged_while_reading_and_back_under_another_number(tmp_path: Path) -> None:
     with serving(tmp_path) as served, driver(served, setpoint=36.0) as tips:
-        tips.wait(5, 1.0)
+        tips.wait(5, COMING)
         before = os.readlink(served.path)
         served.unplug()
         assert "plugged in" in str(error_within(tips.take, LinkLostError))
@@ -174,7 +175,7 @@ def test_another_device_in_its_place(tmp_path: Path) -> None:
 
 def test_a_silent_hang_is_told_and_repaired(tmp_path: Path) -> None:
     with serving(tmp_path) as served, driver(served) as tips:
-        tips.wait(5, 1.0)
+        tips.wait(5, COMING)
         with served.paused():
             served.device.stall_until = served.now + 0.6
         assert "no sample for" in str(error_within(tips.take, StaleSensorError))
@@ -235,7 +236,7 @@ def test_garbage_at_boot(tmp_path: Path) -> None:
     device = EmulatedFingertips()
     device._out.append(bytes(range(1, 256)) * 4)
     with serving(tmp_path, device) as served, driver(served) as tips:
-        tips.wait(5, 1.0)
+        tips.wait(5, COMING)
         assert tips.statistics().lost == 0
 
 
@@ -285,11 +286,11 @@ def test_no_acknowledgement_at_all(tmp_path: Path) -> None:
 
 def test_a_reboot_in_mid_run(tmp_path: Path) -> None:
     with serving(tmp_path) as served, driver(served, rate=500, setpoint=36.0) as tips:
-        before = tips.wait(50, 1.0)
+        before = tips.wait(50, COMING)
         with served.paused():
             served.device.reboot()
         healthy_within(tips)
-        after = tips.wait(50, 1.0)
+        after = tips.wait(50, COMING)
         statistics = tips.statistics()
         assert (statistics.reboots, statistics.reconnects, statistics.late) == (1, 0, 0)
         assert tips.thermostats().setpoint == (36.0, 36.0)
@@ -304,7 +305,7 @@ def test_numbers_and_time_wrap(tmp_path: Path) -> None:
     device._sequence = 65500
     device._out.clear()
     with serving(tmp_path, device) as served, driver(served, rate=500) as tips:
-        samples = tips.wait(400, 3.0)
+        samples = tips.wait(400, COMING)
         statistics = tips.statistics()
     assert (statistics.lost, statistics.late, statistics.duplicates) == (0, 0, 0)
     assert samples.device_time[0] < 2**32 / 1e6 < samples.device_time[-1]
@@ -326,7 +327,7 @@ def test_a_host_that_does_not_read_costs_whole_samples(tmp_path: Path) -> None:
     device = EmulatedFingertips()
     with serving(tmp_path, device) as served:
         with driver(served, rate=1000) as tips:
-            tips.wait(10, 1.0)
+            tips.wait(10, COMING)
         with served.paused():
             served.device.advance(served.now)
         for _ in range(60):  # 6 s of samples at once, in steps that a real device would take
@@ -337,7 +338,7 @@ def test_a_host_that_does_not_read_costs_whole_samples(tmp_path: Path) -> None:
         port = SerialPort(served.path)  # which forgets what the kernel had kept
         port.close()
         with driver(served, rate=1000) as tips:
-            tips.wait(100, 1.0)
+            tips.wait(100, COMING)
             assert tips.statistics().rejected <= 1  # the frame that was being written
             assert tips.status().overruns > 0
 
@@ -373,7 +374,7 @@ def test_sensor_faults_are_told(tmp_path: Path, break_it, flag: Flag, message: s
             break_it(served.device)
         time.sleep(0.1)
         tips.take()
-        samples = tips.wait(5, 1.0)
+        samples = tips.wait(5, COMING)
     assert samples.faults & flag
     assert np.isnan(samples.voltage[:, 0]).all() == (flag == Flag.NO_VOLTAGE_LEFT)
     with pytest.raises(SensorFaultError, match=message):

@@ -27,9 +27,9 @@ from thermograsp.hardware import (
     replay,
 )
 from thermograsp.hardware.protocol.samples import Samples
-from thermograsp.hardware.recordings.recording import MAGIC
+from thermograsp.hardware.recordings.recording import MAGIC, SENT
 
-from .serving import driver, serving
+from .serving import COMING, driver, serving
 from .test_fingertips import CONSTANTS, ramp
 
 SIDES = [
@@ -133,6 +133,22 @@ def test_a_beginning_that_is_damaged_costs_only_itself(tmp_path: Path) -> None:
         assert len(kept) == entries and found.complete, what
         assert (found.metadata.get("note") == "a test") == (what != "both")
         assert found.damage or what == "missing"
+
+
+def test_no_sample_is_lost_where_what_was_asked_is_damaged(tmp_path: Path) -> None:
+    """A whole replay waits for the first answer; without its question there would be none."""
+    file = tmp_path / "line.tgr"
+    recorded(file)
+    whole, content = replay(file), bytearray(file.read_bytes())
+    at = len(MAGIC)
+    while at < len(content):
+        length, kind = int.from_bytes(content[at : at + 4], "little"), content[at + 4]
+        if kind == SENT:
+            content[at + 14] ^= 1
+        at += length + 17
+    file.write_bytes(content)
+    again = replay(file)
+    assert again.damage and len(again.samples) == len(whole.samples) > 0
 
 
 def test_nothing_is_recorded_after_the_end(tmp_path: Path) -> None:
@@ -285,7 +301,7 @@ import sys, time
 from thermograsp.hardware import Fingertips, Recorder
 with Recorder(sys.argv[2], {}) as recorder, Fingertips(sys.argv[1], rate=500, tap=recorder) as tips:
     while True:
-        print(len(tips.wait(50, 1.0)), flush=True)
+        print(len(tips.wait(50, 10.0)), flush=True)
 """
 
 
@@ -310,18 +326,18 @@ def test_a_recording_through_an_unplugged_line(tmp_path: Path) -> None:
     file = tmp_path / "line.tgr"
     with serving(tmp_path, EmulatedFingertips(ramp)) as served, Recorder(file) as recorder:
         with driver(served, tap=recorder) as tips:
-            tips.wait(20, 1.0)
+            tips.wait(20, COMING)
             served.unplug()
             time.sleep(0.05)
             served.plug()
             deadline = time.monotonic() + 2.0
             while tips.statistics().reconnects == 0 and time.monotonic() < deadline:
                 time.sleep(0.01)
-            tips.wait(20, 1.0)
+            tips.wait(20, COMING)
             with served.paused():
                 served.device.reboot()
             time.sleep(0.3)
-            tips.wait(20, 1.0)
+            tips.wait(20, COMING)
         counts = tips._link.session.counts
     again = replay(file)
     assert [text for _, text in again.events if text == "rebooted"] == ["rebooted"]

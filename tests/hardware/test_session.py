@@ -5,8 +5,10 @@ from hypothesis import strategies as st
 
 from thermograsp.hardware.protocol.frame import Frame, encode_frame
 from thermograsp.hardware.protocol.messages import (
+    Acknowledgement,
     Calibration,
     Code,
+    Result,
     Sample,
     encode_message,
 )
@@ -80,3 +82,20 @@ def test_a_reboot_begins_at_zero() -> None:
     assert (session.counts.late, session.counts.lost, session.unidentified) == (0, 0, True)
     assert [row.device_time for row in session.rows] == [100.0, 0.001, 0.011]
     assert [round(row.time, 3) for row in session.rows] == [100.0, 101.0, 101.01]
+
+
+def test_what_comes_before_the_first_answer_on_an_opened_line_is_old() -> None:
+    """Half a second of samples that waited somewhere, in a burst, then the answer and what is new."""
+    session = Session()
+    session.receive(wire(0, 1_000_000), 1.0)
+    session.reopened()
+    for k in range(50):
+        session.receive(wire(100 + k, 2_000_000 + 10_000 * k), 3.0)
+    answer = encode_message(Acknowledgement(7, Code.SET_RATE, Result.DONE))
+    session.receive(encode_frame(Frame(Code.ACKNOWLEDGEMENT, 0, 150, 3_000_000, answer)), 3.001)
+    assert len(session.rows) == 1, "an answer to another host's command"
+    session.awaited[7] = None
+    session.receive(encode_frame(Frame(Code.ACKNOWLEDGEMENT, 0, 151, 3_001_000, answer)), 3.002)
+    session.receive(wire(152, 3_010_000), 3.011)
+    assert [row.device_time for row in session.rows] == [1.0, 3.01]
+    assert session.rows[-1].time == 3.01 and session.clock.drift == 0.0

@@ -31,7 +31,7 @@ from thermograsp.hardware.drivers.gripper import Contact
 from thermograsp.twin.beside import best_delay
 from thermograsp.twin.simulated_hand import SimulatedHand
 
-from .serving import nothing_left
+from .serving import COMING, nothing_left
 
 pytest.importorskip("serial")
 
@@ -106,15 +106,15 @@ def test_a_gripper_that_closes_on_a_simulated_object_says_so(tmp_path: Path) -> 
     with on_ports(tmp_path, hand), RobotiqGripper(str(tmp_path / "gripper")) as gripper:
         gripper.activate()
         with Fingertips(str(tmp_path / "tips"), rate=100) as tips:
-            tips.wait(5, 2.0)
+            tips.wait(5, COMING)
             gripper.move(0.0, 20.0, 0.1)
             status = gripper.wait()
             assert status.contact is Contact.CLOSING and status.opening == pytest.approx(0.04, abs=2e-3)
             tips.take()  # the fingers stand a few samples before the force is all there
-            assert tips.wait(10, 1.0).force[-1, :, 0] == pytest.approx(20.0, abs=0.5)
+            assert tips.wait(10, COMING).force[-1, :, 0] == pytest.approx(20.0, abs=0.5)
             gripper.move(0.085, 0.0, 0.1)
             assert gripper.wait().contact is Contact.NONE
-            tips.wait(5, 2.0)
+            tips.wait(5, COMING)
             assert hand.episodes == 2  # a fresh object
 
 

@@ -21,8 +21,8 @@ from thermograsp.thermal import material
 
 ray: Any = pytest.importorskip("ray", reason="needs Ray: make test-ray")
 
-PLAN = dataset.Plan(episodes=160, seed=5, shard_size=16, materials=(material("glass"), material("water_gel")))
-COMMAND = "dataset --episodes 160 --seed 5 --shard 16 --material glass water_gel".split()
+PLAN = dataset.Plan(episodes=80, seed=5, shard_size=8, materials=(material("glass"), material("water_gel")))
+COMMAND = "dataset --episodes 80 --seed 5 --shard 8 --material glass water_gel".split()
 STORE = 100 * 2**20
 # A killed node is given up after two seconds, not after some fifteen.
 QUICK = {
@@ -105,7 +105,7 @@ def test_a_node_that_dies_loses_and_doubles_nothing(
         (reference / name).write_bytes(content)
     rows = sorted_rows(tmp_path)
     assert rows.equals(sorted_rows(reference), check_metadata=True)
-    assert rows.column("seed").to_pylist() == list(range(5, 165))
+    assert rows.column("seed").to_pylist() == list(range(5, 85))
 
 
 def test_a_driver_that_is_killed_goes_on_where_it_was(plain: dict[str, bytes], tmp_path: Path) -> None:

@@ -26,8 +26,8 @@ def clone(folder: Path) -> Path:
 
 def clean_environment(home: Path) -> dict[str, str]:
     """Of a user who has just logged in, with an empty home: nothing of Python's, of make's or of ours is set. What pip
-    has downloaded before, and where it downloads from, stays."""
-    ours = tuple("PYTHON MAKE MFLAGS VIRTUAL_ENV VENV THERMOGRASP MUJOCO_GL XDG_CACHE_HOME NUMBA".split())
+    has downloaded before, and where it downloads from, stays, and what has been compiled where NUMBA_CACHE_DIR says."""
+    ours = tuple("PYTHON MAKE MFLAGS VIRTUAL_ENV VENV THERMOGRASP MUJOCO_GL XDG_CACHE_HOME".split())
     kept = {name: value for name, value in os.environ.items() if not name.startswith(ours)}
     kept.setdefault("PIP_CACHE_DIR", str(Path.home() / ".cache" / "pip"))
     config = Path.home() / ".config" / "pip" / "pip.conf"

@@ -20,19 +20,15 @@ def test_drops_are_those_of_a_conductance_place_by_place(name: str) -> None:
     assert np.abs(placed - even).max() < 0.05
 
 
-@pytest.mark.parametrize(
-    ("name", "force", "cylinder", "most"),
-    [
-        ("glass", 10.0, False, 0.06),  # touches 7.7 mm2: as a patch, .28 K less
-        ("wood", 1.0, False, 0.02),
-        ("aluminium", 10.0, False, 0.05),
-        ("glass", 1.0, True, 0.11),  # .42 K less
-        ("wood", 20.0, True, 0.06),
-    ],
-)
+@pytest.mark.parametrize("name", ["copper", "aluminium", "glass", "wood"])
+@pytest.mark.parametrize("cylinder", [False, True])
+@pytest.mark.parametrize("radius", [0.004, 0.02])
 def test_under_a_skin_heat_takes_the_gas_beside_the_contact_too(
-    name: str, force: float, cylinder: bool, most: float
+    name: str, cylinder: bool, radius: float
 ) -> None:
-    """After a second, on 20 mm."""
-    row = STUDY["compared"](name, 0.02, force, cylinder, "filled_silicone")
-    assert row["even"][1] == pytest.approx(row["placed"][1], abs=most)
+    """At any force. A patch as wide as the mean of what touches and the gas had 75 % more at the lightest, and a third
+    less at the others as a patch of what touches."""
+    for force in (0.003, 0.3, 30.0):
+        row = STUDY["compared"](name, radius, force, cylinder, "filled_silicone")
+        assert row["even"] == pytest.approx(row["placed"], rel=0.16)
+        assert row["even"][1:] == pytest.approx(row["placed"][1:], rel=0.085)

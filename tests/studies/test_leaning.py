@@ -50,7 +50,7 @@ def test_a_line_that_touches_with_its_end_alone_bears_strips_of_growing_depth(st
 
 
 @pytest.mark.parametrize("tip", ["capsule", "cylinder"])
-@pytest.mark.parametrize(("degrees", "drop"), [(0.0, 4.5), (3.0, 4.5), (4.0, 3.0), (5.0, 1.2), (6.5, 0.1)])
+@pytest.mark.parametrize(("degrees", "drop"), [(0.0, 4.6), (3.0, 4.6), (4.0, 3.2), (5.0, 1.3), (6.5, 0.1)])
 def test_the_face_bears_what_springs_less_the_zone_do(
     study: ModuleType, tip: str, degrees: float, drop: float
 ) -> None:
@@ -66,7 +66,7 @@ def test_the_zone_costs_what_the_docs_say(study: ModuleType) -> None:
         study.row("capsule", None, "aluminium", degrees, cell=COARSE).without_zone_K
         for degrees in (1.0, 2.0, 3.0)
     ]
-    assert drops == pytest.approx([3.4, 1.4, 0.4], abs=0.06)
+    assert drops == pytest.approx([3.6, 1.5, 0.4], abs=0.06)
 
 
 @pytest.mark.parametrize(("degrees", "bound"), [(0.0, 0.75), (4.0, 0.05)])

@@ -27,7 +27,7 @@ def study() -> Iterator[ModuleType]:
     [
         ("seam", (9.9, 9.9, 9.9, 9.9, 8.1)),
         ("leaning", (9.9, 5.9, 5.6, 9.9, 5.8)),
-        ("capsule", (5.7, 7.6, 9.8, 5.7, 7.4)),
+        ("capsule", (5.9, 7.9, 9.9, 5.9, 7.5)),
         ("overlap", (9.9, 10.5, 10.5)),
         ("edge", (5.8, 7.4)),
     ],
@@ -45,15 +45,14 @@ def test_a_round_fingertip_on_a_block_feels_what_a_flat_one_does_on_such_a_body(
 ) -> None:
     for row in study.swapped(material):
         one, other = row.drops_K.values()
-        assert other == pytest.approx(one, rel=0.03)
+        assert other == pytest.approx(one, rel=0.02)
 
 
 def test_two_that_pinch_a_sheet_feel_what_one_does_on_half_of_it(study: ModuleType) -> None:
-    wide, narrow, _ = study.pinch("glass")
-    one, two = wide.drops_K.values()
-    assert two == pytest.approx(one, abs=0.01)
-    one, two = narrow.drops_K.values()
-    assert 0.15 < two - one < 0.25  # the wall beneath a narrow contact is the whole sheet
+    """A wide pad, a narrow one and a ball."""
+    for row in study.pinch("glass"):
+        one, two = row.drops_K.values()
+        assert two == pytest.approx(one, abs=0.01)
 
 
 def test_the_order_of_fingertips_counts_aside_of_their_middles(

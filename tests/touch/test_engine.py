@@ -253,6 +253,10 @@ WAYS, SKINS = ("1 0 0", "0 -1 0", "0.8 0.6 0"), (None, "filled_silicone")
     [
         *(('type="box" size=".02 .02 .02"', way, skin, 0.01) for way in WAYS for skin in SKINS),
         *(('type="box" size=".02 .02 .02"', WAYS[2], skin, 0.003) for skin in SKINS),
+        *(
+            (f'type="box" size="{bar}"', WAYS[0], None, 0.01)
+            for bar in (".004 .02 .02", ".02 .0035 .02", ".004 .003 .02")
+        ),
         pytest.param('type="mesh" mesh="block"', WAYS[2], None, 0.003, marks=pytest.mark.slow),
         *(
             pytest.param('type="mesh" mesh="block"', way, skin, 0.01, marks=pytest.mark.slow)

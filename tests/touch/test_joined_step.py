@@ -24,7 +24,9 @@ def stepped(
         for p in range(patterns):
             room.resistance[c * patterns + p], room.difference[c * patterns + p] = resistance[c], 0.0
         room.difference[c * patterns] = difference[c]
-    lost = step(DT, at, integers, ports, grams, paces, patterns, states, 0, stride, held, room)
+    lost = step(
+        DT, at, integers, ports, grams, paces, patterns, states, 0, stride, held, room, False, room.flow
+    )
     for c in range(len(flow)):
         flow[c] = room.flow[c * patterns]
     return lost

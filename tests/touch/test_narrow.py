@@ -393,3 +393,45 @@ def test_a_flat_pad_on_a_flat_face_has_none() -> None:
         touch.update(data)
     assert touch.reading.touching == ("block",)
     assert not touch._heat.state().narrow.any()
+
+
+BAR = """<mujoco><option gravity="0 0 0"/><worldbody>
+  <body name="bar"><geom type="box" size="{half} .02 .02" pos="{middle} 0 0"/></body>
+  <body name="tip" pos="0 0 .0241"><joint type="slide" axis="0 0 -1" damping="20"/>
+    <geom name="pad" type="box" size=".01 .01 .004" mass=".1"/></body>
+</worldbody><actuator><motor joint="{joint}"/></actuator></mujoco>"""
+
+
+def over_a_bar(first: float, last: float, made_of: str) -> float:
+    """K of a skinned pad over a bar from first to last m across, after a second; its sensor reaches 4.5 mm to each
+    side."""
+    text = BAR.format(half=(last - first) / 2, middle=(first + last) / 2, joint="down")
+    model = mujoco.MjModel.from_xml_string(text.replace("<joint type", '<joint name="down" type'))
+    data = mujoco.MjData(model)
+    tip = Fingertip("pad", skin="filled_silicone")
+    touch = ThermalTouch(model, fingertips={"tip": tip}, objects={"bar": made_of}, chain="ideal")
+    data.ctrl[:] = 10.0
+    for _ in range(500):
+        mujoco.mj_step(model, data)
+        touch.update(data)
+    return float(touch.reading.temperature_drop[0])
+
+
+@pytest.mark.parametrize("made_of", ["glass", "wood", "aluminium"])
+def test_what_a_bar_has_beyond_the_face_counts_little(made_of: str) -> None:
+    """As much of the sensor's face is covered by all of them, from one end of the bar to beside the face's end."""
+    drops = np.array(
+        [over_a_bar(-2e-3, last * 1e-3, made_of) for last in (4.5, 5.0, 6.0, 6.5, 7.0, 9.0, 20.0)]
+    )
+    assert drops.max() / drops.min() < 1.04
+
+
+@pytest.mark.parametrize("made_of", ["glass", "aluminium"])
+def test_a_bar_that_leaves_the_face_is_felt_less_and_less(made_of: str) -> None:
+    """Nearly by as much as it covers less of it."""
+    offsets = np.array([0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0]) * 1e-3
+    drops = np.array([over_a_bar(off - 4e-3, off + 4e-3, made_of) for off in offsets])
+    assert (np.diff(drops) < 0).all()
+    if made_of == "glass":
+        covered = (8.5e-3 - offsets) / 8e-3
+        assert (np.abs(drops / drops[0] - covered) < 0.12).all()

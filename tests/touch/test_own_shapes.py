@@ -22,6 +22,7 @@ from thermograsp.touch import Fingertip, ThermalTouch, grasp_touch, prepare
 from thermograsp.touch.contacts import AREA, CLOSED, CONDUCTANCE
 
 from .engine_scene import NEEDS_RECORDS, keep_boxes
+from .recorded import felt_alike
 
 AREA_OF_FACE = 81e-6  # m2
 CUBE = trimesh.creation.box((0.04, 0.04, 0.04))
@@ -292,18 +293,7 @@ def test_fixed_touch_is_the_loop() -> None:
     pads = {"tip": "tip", "other": "other"}
     model = prepare(spec(mesh("tray"), 0.015, 2), pads, {"thing": "ceramic"})
     touch = touch_of(model, "ceramic", tips=2, worlds=1, dt=0.01)
-    fixed = touch.fixed_touch(like=np.zeros(0))
-    state, data, drop = fixed.start(), mujoco.MjData(model), np.zeros(2)
-    data.ctrl[:] = 10.0, 0.0, 8.0, 0.0
-    for n in range(60):
-        record = np.empty((1, fixed.substeps, model.nsensordata))
-        for k in range(fixed.substeps):
-            mujoco.mj_step(model, data)
-            record[:, k] = data.sensordata
-        drop = touch.update(record).temperature_drop
-        state, reading = fixed.advance(state, fixed.contacts(record))
-        if n < 10 or n % 10 == 9:
-            np.testing.assert_allclose(reading.temperature_drop, drop, atol=1e-6)
+    drop = felt_alike(touch, model, [(10.0, 0.0, 8.0, 0.0)], 60, 1e-6)
     assert drop.min() > 2.0
 
 

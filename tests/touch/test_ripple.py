@@ -23,7 +23,7 @@ from thermograsp.touch.contacts import (
     PULSES,
 )
 from thermograsp.touch.heat import JoinedHeat, array_ripple
-from thermograsp.touch.heat.ripple import ripple
+from thermograsp.touch.heat.narrow.ripple import ripple
 from thermograsp.touch.scene import BodyShape, PadPlace
 
 from .engine_scene import NEEDS_COMPILER, NEEDS_RECORDS, NEEDS_SPECS, ROUND_OFF, per_kelvin, sent, voltages

@@ -289,7 +289,7 @@ def test_a_round_fingertip_feels_less_than_a_flat_one_and_the_less_the_rounder_t
 def test_a_rod_feels_less_along_a_can_than_on_a_block_and_more_across_it() -> None:
     """Along either, 9 of its 24 mm press on the sensor's face, with 9/24 of the force; across, all of it does."""
     on_block, along, across = (dropped("tip", "capsule", target) for target in ("block", "can along", "can"))
-    assert (along, on_block, across) == pytest.approx((5.0, 5.2, 5.9), abs=0.06)  # as docs/plugin.md has them
+    assert (along, on_block, across) == pytest.approx((5.1, 5.3, 6.1), abs=0.06)  # as docs/plugin.md has them
     rod = np.array([125.0, 0.0, STIFFNESS, 0.0064, 0.012, 0.0045, 0.0045, STIFFNESS, 0.0064, 0.012])
     can = body(1 / 0.03, 0.0, WIDE, 0.04)
     assert round_contact(rod, can, ALONG, 5.0, 0.0, 0.0)[1] == pytest.approx(5.0 * 9 / 24, rel=1e-4)

@@ -61,7 +61,7 @@ def test_a_bare_face_conducts_less_and_bears_less_of_a_flat_face_s_force_than_a_
         through = [
             curved_contact(each.tables[each.curved[0, target, 0]], 10.0, 0.0, 0.0)[0] for each in (bare, worn)
         ]
-        assert 10 * through[0] < through[1]
+        assert 2 * through[0] < through[1]  # under a skin with what constricts it there
     assert contact(bare.laws[0, 2, 0], 10.0, np.zeros(3))[1] == pytest.approx(10.0 * (9 / 20) ** 2)
     assert contact(worn.laws[0, 2, 0], 10.0, np.zeros(3))[1] > 8.0
 

@@ -20,9 +20,11 @@ pairs.
 
 from __future__ import annotations
 
+import numpy as np
+
 from thermograsp.errors import InvalidValueError
 
-from ..numerics import Array, namespace_of
+from ..numerics import Array, as_like, namespace_of
 from .rows import HeatReading
 from .tables import ArrayTables
 
@@ -30,13 +32,19 @@ _Complex = tuple[Array, Array]
 
 
 def array_step(
-    tables: ArrayTables, network: Array | int, state: Array, conductance: Array, difference: Array
+    tables: ArrayTables,
+    network: Array | int,
+    state: Array,
+    conductance: Array,
+    difference: Array,
+    mutual: Array | None = None,
 ) -> tuple[Array, HeatReading]:
     """State (B, K) after one step, and what is read then; the readings have no axis of samples: drop (B, F) and so on.
 
     tables: array_tables. network: (B,) integers, which of the tables' networks; or one int for all rows. state: (B, K),
     zeros where everything is at its first temperature. conductance: (B, F) W/K of each contact, constant over the
     step, >= 0; 0 where nothing touches. difference: (B, F) K, what sensor less object was when both were uniform.
+    mutual: (B, F, F) K/W, symmetric, what the even flow of one contact does against that of another.
     A value that is not finite makes its own row's results not finite. JAX takes the nearest network where there is none
     of that index. Raises InvalidValueError where conductance or difference are not those of the tables' fingertips.
     """
@@ -61,7 +69,12 @@ def array_step(
         -imag.reshape((*rows, ports, pairs)),
     )
     contact = xp.broadcast_to(conductance[..., None], (*rows, fingertips, modes)).reshape((*rows, ports, 1))
-    flows = xp.stack(_flows(contact, (gram[..., 0, :, :, :], gram[..., 1, :, :, :]), drive), -3)
+    bodies = gram[..., 0, :, :, :], gram[..., 1, :, :, :]
+    if mutual is not None:
+        even = as_like(np.eye(1, modes)[0], mutual)
+        between = mutual[..., :, None, :, None] * even[:, None, None] * even
+        bodies = bodies[0] + between.reshape((*mutual.shape[:-2], ports, ports, 1)), bodies[1]
+    flows = xp.stack(_flows(contact, bodies, drive), -3)
     pushed = (
         flows.reshape((*rows, system, 1)) * push.reshape((*push.shape[:-4], system, push.shape[-1]))
     ).sum(-2)

@@ -19,7 +19,7 @@ from .curved_table import (
     even_places,
     table_values,
 )
-from .fingertip import element_joint, face_joint, in_series, pad_joint, skinned, touching
+from .fingertip import Beneath, beneath, element_joint, face_joint, in_series, pad_joint, skinned, touching
 from .footprint import (
     LOG_LEAST,
     LOG_MOST,
@@ -31,8 +31,9 @@ from .footprint import (
     contact,
     flat_patch,
     footprint,
-    gas_conduction,
+    gas_around,
     solid_conduction,
+    through_soft,
 )
 from .gas_beside import (
     Wedge,
@@ -62,7 +63,14 @@ from .law import (
     sphere_law,
     table_footprint,
 )
-from .patch_place import NARROW, patch_ends, patch_offset
+from .patch_place import (
+    NARROW,
+    array_offset_of_share,
+    array_patch_offset,
+    offset_of_share,
+    patch_ends,
+    patch_offset,
+)
 from .rigid import RigidContact, rigid_cylinder, rigid_sphere
 from .rough_faces import (
     AIR,
@@ -79,14 +87,10 @@ from .rough_faces import (
 )
 from .round_bodies import disc_on_face
 from .spread import (
-    SPOT_ON_SKIN,
-    Beneath,
     array_beside_round,
-    beneath,
     beside_round,
     even_patch,
     flows_of_line,
-    flows_of_spot,
     narrowing,
     widened,
 )
@@ -108,7 +112,6 @@ __all__ = [
     "NARROW",
     "PLACES",
     "SEPARATION",
-    "SPOT_ON_SKIN",
     "TABLE",
     "TABLE_FORCES",
     "THERMOSTAT_FACE",
@@ -161,9 +164,8 @@ __all__ = [
     "flat_law",
     "flat_patch",
     "flows_of_line",
-    "flows_of_spot",
     "footprint",
-    "gas_conduction",
+    "gas_around",
     "in_series",
     "joint",
     "mean_gap",
@@ -171,6 +173,9 @@ __all__ = [
     "pad_joint",
     "pad_law",
     "patch_ends",
+    "array_offset_of_share",
+    "array_patch_offset",
+    "offset_of_share",
     "patch_offset",
     "rigid_cylinder",
     "rigid_sphere",
@@ -183,6 +188,7 @@ __all__ = [
     "stack_joints",
     "table_footprint",
     "table_values",
+    "through_soft",
     "touching",
     "typical_slope",
     "wedge_gas",

@@ -34,8 +34,10 @@ class ArrayLaws(NamedTuple):
     narrowing: Array
     mean_gap: Array
     straight: Array
+    deep: Array
     series: Array
     sheet: Array
+    thick: Array
     spot_scale: Array
     spot_power: Array
     spot_most: Array
@@ -98,7 +100,9 @@ def array_flat_patch(laws: ArrayLaws, area: Array, place: Array, width: Array) -
     offset = array_patch_offset(middle, length, face)
     ends = array_patch_ends(pad + middle, pad, length, size, face)
     shares = xp.where(covers[..., None], xp.concatenate((offset, ends), -1), 0.0 * area[..., None])
-    return xp.where(covers, length[..., 1], area**0.5), shares
+    some = area > 0  # the root of 0 has no slope
+    side = xp.where(some, xp.where(some, area, 1.0 + 0.0 * area) ** 0.5, 0.0 * area)
+    return xp.where(covers, length[..., 1], side), shares
 
 
 def array_conductance(laws: ArrayLaws, pressure: Array) -> Array:

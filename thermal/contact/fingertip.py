@@ -2,11 +2,41 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
+from typing import NamedTuple
 
 from ..matter import Material, Skin
+from ..numerics import Array
 from .area import Pad
 from .rough_faces import LAPPED_ALUMINA, THERMOSTAT_FACE, Joint, Surface, joint
+
+_SECONDS = 1.0
+_DEEPEST = 0.8e-3, 3e-3  # m, that heat has come until then: beneath a face on which it spreads, and at most
+
+
+class Beneath(NamedTuple):
+    """What heat meets on both sides of a contact, see spread.py. straight, deep: m2 K/W of both bodies, as deep as it
+    comes beneath a whole face and beneath a part of it. series: m K/W, the reciprocal of their conductivities in
+    series, between which it spreads. sheet, thick: m2 K/W of a skin, and m; heat spreads in it at the edge of what
+    touches only. Numbers, or arrays of one shape."""
+
+    straight: Array
+    deep: Array
+    series: Array
+    sheet: Array
+    thick: Array
+
+
+def beneath(body: Material | Surface, skin: Skin | None = None) -> Beneath:
+    """Of a body under a sensor's face, which wears that skin or is bare. A surface that does not know its body's
+    diffusivity counts as one that conducts heat fast."""
+    depth = math.inf if body.diffusivity is None else math.sqrt(body.diffusivity * _SECONDS)
+    series = 1 / LAPPED_ALUMINA.conductivity + 1 / body.conductivity
+    straight, deep = (min(depth, deepest) * series for deepest in _DEEPEST)
+    if skin is None:
+        return Beneath(straight, deep, series, 0.0, 0.0)
+    return Beneath(straight, deep, series, skin.resistance, skin.thickness)
 
 
 def skinned(pad: Pad, skin: Skin | None) -> Pad:

@@ -28,13 +28,18 @@ from ..numerics import (
     LOW,
     NEAREST,
     SERIES,
+    Array,
+    namespace_of,
 )
+from .fingertip import Beneath
 from .gas_beside import beside_ball, beside_strip
 from .law import CYLINDER, FLAT, SPHERE, TABLE
 from .patch_place import NARROW, patch_ends, patch_offset
 from .round_bodies import ball_on_pad, cylinder_on_pad, disc_on_face
 
 _FIRST, _STEP = math.log(0.01), math.log(3.0)
+_EDGE = 0.7  # how much wider a spot is beneath a skin, over its thickness: a fit, see spread.py
+_SPOT = 2.0  # see _spot_share
 # Mean planes' distance over roughness, sqrt(2) erfc^-1(x), in powers of where sqrt(-log x) is between LOW and HIGH; the
 # series' first terms, good to 1e-11.
 LOG_LEAST, LOG_MOST = math.log(FARTHEST), math.log(NEAREST)
@@ -56,17 +61,29 @@ def conduction(law, force, place):
     """(area m2 on the face, W/K that it conducts, gas beside it with it) at a normal force N > 0 on the pad; see
     footprint. Gas conducts where nothing on the face touches, too."""
     area, load, square, hertz = touched(law, force, place)
-    gas = beside(law, law.mean_gap, area, square, hertz, place)
-    return area, solid_conduction(law, area, load) + gas
+    gas, spread = reached(law, law.straight + law.sheet, area, square, hertz, place)
+    return area, solid_conduction(law, area, load, place, gas, spread) + gas
 
 
 @njit(cache=True, error_model="numpy")
-def gas_conduction(law, force, place):
-    """W/K of the gas beside the contact; see conduction."""
+def gas_around(law, force, place):
+    """(W/K of the gas beside the contact, m2 beside it over which that gas's heat spreads between bodies that give way,
+    see spread.py); see conduction."""
     if law.mean_gap == 0.0:
-        return 0.0
+        return 0.0, 0.0
     area, _, square, hertz = touched(law, force, place)
-    return beside(law, law.mean_gap, area, square, hertz, place)
+    return reached(law, law.straight + law.sheet, area, square, hertz, place)
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def reached(law, resistance, area, square, hertz, place):
+    """gas_around of what `touched` tells, above what resists by so many m2 K/W; 0 leaves the spread aside."""
+    around = beside(law, law.mean_gap, area, square, hertz, place)
+    if around <= 0.0 or resistance <= 0.0:
+        return around, 0.0
+    less = beside(law, law.mean_gap + law.gas * resistance, area, square, hertz, place)
+    rest = max(4 * law.half_face * law.half_face - area, 0.0)
+    return around, min(around * less * resistance / (around - less), rest) if around > less else rest
 
 
 @njit(cache=True, inner=True, error_model="numpy")
@@ -256,8 +273,9 @@ def beside_face(law, halves, force, place, areas):
 
 
 @njit(cache=True, error_model="numpy")
-def solid_conduction(law, area, load):
-    """W/K of an area m2 of the face under a force N on it; law: a FOOTPRINT_LAW.
+def solid_conduction(law, area, load, place, around, spread):
+    """W/K of an area m2 of the face under a force N on it; law: a FOOTPRINT_LAW; place: see footprint; around, spread:
+    of gas_around.
 
     Conductance is that of the mean pressure. Under a curved body pressure varies, and the sum over places is within
     2.5 % of this, as the spots conduct nearly in proportion to pressure and the gas nearly without it."""
@@ -265,7 +283,11 @@ def solid_conduction(law, area, load):
         return 0.0
     if law.conducts[len(law.conducts) - 1] > 0.0:
         return _at_force(law.conducts, load)
-    return constricted(law, area, conductance(law, load / area) * area, law.constriction)
+    conducts = conductance(law, load / area) * area
+    if law.series > 0.0:
+        long = _common(law.half_face, law.length / 2, place[2]) if law.shape == CYLINDER else math.sqrt(area)
+        return through_soft(conducts, around, area, long, 2 * law.half_face, area + spread, law)
+    return constricted(law, area, conducts, law.constriction)
 
 
 @njit(cache=True, error_model="numpy")
@@ -278,6 +300,59 @@ def constricted(law, area, conducts, constriction):
             gas = law.gas / law.mean_gap * area if law.mean_gap > 0.0 else 0.0  # between faces without force
             conducts = gas + (conducts - gas) / (1.0 + (conducts - gas) * constriction * more)
     return conducts
+
+
+@njit(cache=True, inner=True, error_model="numpy", forceinline=True)
+def _spot_share(length, face):
+    """How much a contact of that length m is a spot on the sensor's face of that width m: from 0 where it is as long,
+    to 1 where it is no longer than half of that."""
+    return max(min(_SPOT * (1.0 - length / face), 1.0), 0.0)
+
+
+@njit(cache=True, error_model="numpy")
+def through_soft(conducts, around, area, length, face, whole, below):
+    """W/K of a contact of that area m2 and length m between bodies that give way. What it conducts more than as much of
+    what is around it is in series with what its heat meets more than it would over `whole` m2: spread.py says what.
+
+    conducts: W/K by itself; around: W/K of the gas over the rest of the whole. face: m, the sensor's width. below: of
+    beneath."""
+    if not 0.0 < area < whole:
+        return conducts
+    spot, radius, wide = _spot_share(length, face), math.sqrt(area / math.pi), math.sqrt(whole / math.pi)
+    spreads, rim, outer = below.series / 4 * (1.0 / radius - 1.0 / wide), math.pi * radius, math.pi * wide
+    if spot < 1.0:
+        long = min(length, face)
+        strip = -below.series / (math.pi * long) * math.log(math.sin(math.pi / 2 * area / whole))
+        spreads, rim, outer = (
+            strip + spot * (spreads - strip),
+            long + spot * (rim - long),
+            long + spot * (outer - long),
+        )
+    straight, edge = below.deep * (1.0 / area - 1.0 / whole), _EDGE * below.thick
+    more = below.sheet * (1.0 / (area + edge * rim) - 1.0 / (whole + edge * outer))
+    if spreads > 0.0:
+        more += spreads * straight / math.sqrt(spreads * spreads + straight * straight)
+    same = min(around * area / (whole - area), conducts)
+    return same + (conducts - same) / (1.0 + (conducts - same) * more)
+
+
+def array_through_soft(
+    conducts: Array, around: Array, area: Array, length: Array, face: Array, whole: Array, below: Beneath
+) -> Array:
+    """through_soft of arrays of one shape, of areas and lengths above 0 and areas below the whole."""
+    xp = namespace_of(conducts)
+    spot = (_SPOT * (1.0 - length / face)).clip(0.0, 1.0)
+    radius, wide, long = (area / math.pi) ** 0.5, (whole / math.pi) ** 0.5, xp.minimum(length, face)
+    strip = -below.series / (math.pi * long) * xp.log(xp.sin(math.pi / 2 * area / whole))
+    spreads = strip + spot * (below.series / 4 * (1.0 / radius - 1.0 / wide) - strip)
+    rim, outer = long + spot * (math.pi * radius - long), long + spot * (math.pi * wide - long)
+    straight, edge = below.deep * (1.0 / area - 1.0 / whole), _EDGE * below.thick
+    more = below.sheet * (1.0 / (area + edge * rim) - 1.0 / (whole + edge * outer))
+    some = spreads > 0
+    spreads = xp.where(some, spreads, straight)
+    more = more + some * spreads * straight / (spreads * spreads + straight * straight) ** 0.5
+    same = xp.minimum(around * area / (whole - area), conducts)
+    return same + (conducts - same) / (1.0 + (conducts - same) * more)
 
 
 @njit(cache=True, inner=True, error_model="numpy", fastmath=FAST, forceinline=True)

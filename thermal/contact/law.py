@@ -14,7 +14,7 @@ from thermograsp.errors import InvalidValueError, positive
 
 from ..matter import Material, Skin
 from .area import ContactArea, Pad, flat_contact
-from .fingertip import face_joint, pad_joint, skinned
+from .fingertip import beneath, face_joint, pad_joint, skinned
 from .rough_faces import AIR, LAPPED_ALUMINA, Gas, Joint, Surface, gas_conductance, joint, solid_conductance
 
 FLAT, CYLINDER, SPHERE, TABLE = range(4)
@@ -41,12 +41,14 @@ CONTACT_LAW = np.dtype(
         ("face_length", "f8"),
         # of a contact that presses unevenly: by how much its patch narrows, see spread.narrowing
         ("narrowing", "f8"),
-        # beside what is round on both sides: m of the gas between faces that touch without force, the temperature jump
-        # with it, 0 of none; and spread.Beneath
+        # beside what is round on both sides, or curved under a skin: m of the gas between faces that touch without
+        # force, the temperature jump with it, 0 of none; and Beneath
         ("mean_gap", "f8"),
         ("straight", "f8"),
+        ("deep", "f8"),
         ("series", "f8"),
         ("sheet", "f8"),
+        ("thick", "f8"),
         # solid spots: h = exp(min(spot_scale + spot_power log p, spot_most))
         ("spot_scale", "f8"),
         ("spot_power", "f8"),
@@ -226,8 +228,13 @@ def round_footprint(
         return bare_footprint(pad, body, radius, length)
     sheet, faces = skinned(pad, skin), face_joint(skin, body)
     if length is None:
-        return sphere_footprint(sheet, faces, radius)
-    return cylinder_footprint(sheet, faces, radius, length)
+        law = sphere_footprint(sheet, faces, radius)
+    else:
+        law = cylinder_footprint(sheet, faces, radius, length)
+    below = beneath(body, skin)
+    for name, value in below._asdict().items():
+        law[name] = value
+    return law
 
 
 def table_footprint(

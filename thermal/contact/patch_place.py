@@ -34,6 +34,17 @@ def patch_offset(offset, length, width):
 
 
 @njit(cache=True, borrows=True, error_model="numpy")
+def offset_of_share(share, length, width):
+    """m from the face's middle of a contact's, of which patch_offset tells that share; 0 of what is as long as the
+    face."""
+    if not 0.0 < length < width * NARROW:
+        return 0.0
+    near = math.log(math.sin(math.pi * length / (2 * width)))
+    aside = math.acos(math.exp(min(max(share, 0.0), 1.0) * near)) * width / math.pi
+    return min(aside, (width - length) / 2)
+
+
+@njit(cache=True, borrows=True, error_model="numpy")
 def patch_ends(middle, pad, length, side, width):
     """Share by which a contact of that length m lies at an end of what is touched, which is side m long: middle and pad
     (m) are the contact's middle and the pad's from its own. What the whole face of a pad there meets is 0."""
@@ -52,6 +63,18 @@ def array_patch_offset(offset: Array, length: Array, width: Array) -> Array:
     aside = xp.cos(math.pi * xp.minimum(abs(offset), (width - short) / 2) / width)
     share = xp.log(aside) / xp.where(near < 0, near, -1.0 + 0.0 * near)
     return xp.where(narrow & (near < 0), share.clip(None, 1.0), 1.0 + 0.0 * length)
+
+
+def array_offset_of_share(share: Array, length: Array, width: Array) -> Array:
+    """offset_of_share as a pure function of arrays."""
+    xp = namespace_of(length)
+    narrow, short = _narrow(xp, length, width)
+    near = xp.log(xp.sin(math.pi * short / (2 * width)))
+    held = share.clip(0.0, 1.0)
+    # the arc's cosine has no slope where there is nothing aside
+    some = held * near < 0
+    aside = xp.arccos(xp.exp(xp.where(some, held * near, near - 1.0))) * width / math.pi
+    return xp.where(narrow & some, xp.minimum(aside, (width - short) / 2), 0.0 * length)
 
 
 def array_patch_ends(middle: Array, pad: Array, length: Array, side: Array, width: Array) -> Array:

@@ -53,6 +53,7 @@ _PLASTIC_SPOTS, _ELASTIC_SPOTS = 1.25, 1.55
 class Surface:
     """One rough face. conductivity: W/(m K). roughness: m, rms height. slope: mean absolute asperity slope.
     youngs_modulus: Pa. poisson_ratio: 0 .. 0.5. microhardness: Pa; inf for what never yields, such as rubber.
+    diffusivity: m2/s, of what is beneath, None where that is not known.
 
     Raises InvalidValueError for a value that no surface can have.
     """
@@ -63,6 +64,7 @@ class Surface:
     youngs_modulus: float
     poisson_ratio: float = 0.3
     microhardness: float = np.inf
+    diffusivity: float | None = None
 
     def __post_init__(self) -> None:
         for name in ("conductivity", "roughness", "slope", "youngs_modulus"):
@@ -71,6 +73,8 @@ class Surface:
             raise InvalidValueError(f"surface: poisson_ratio must be 0 .. 0.5, got {self.poisson_ratio!r}")
         if not self.microhardness > 0:
             raise InvalidValueError(f"surface: microhardness must be above 0 Pa, got {self.microhardness!r}")
+        if self.diffusivity is not None:
+            positive("surface: diffusivity (m2/s)", self.diffusivity)
 
     @classmethod
     def of(cls, material: Material) -> Surface:
@@ -90,6 +94,7 @@ class Surface:
             youngs_modulus=material.youngs_modulus,
             poisson_ratio=0.3 if ratio is None else ratio,
             microhardness=np.inf if material.microhardness is None else material.microhardness,
+            diffusivity=material.diffusivity,
         )
 
 

@@ -143,7 +143,14 @@ def box_kernel(
 
 
 @njit(cache=True, error_model="numpy")
-def _kernel(size, film, heat_capacity, taus, face, centre, half, nodes, jumps, free, terms, wanted, start):
+def _kernel(*told):
+    return compiled_kernel(*told)
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def compiled_kernel(
+    size, film, heat_capacity, taus, face, centre, half, nodes, jumps, free, terms, wanted, start
+):
     """What box_kernel tells, but of the slowest eigenfunction its squared wave number 1/m2, and kernel (T, L P) of the
     heat in the box whatever the film. film: 1/m, see wave_numbers. taus: (T,) m2, diffusivity times times. jumps:
     (N, 2, F, E) of the functions along a patch's axes. terms: (P, X, 2), a pattern is the sum of X products of one

@@ -16,16 +16,25 @@ import math
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
+import numba
 import numpy as np
 
 from thermograsp.compiled import njit
 
 from ..matter import Material, SensorStack
-from ..numerics import ThermalNetwork, least_row, output_row, passive_residues, port_residues, turn_diagonal
+from ..numerics import (
+    ThermalNetwork,
+    compiled_residues,
+    least_row,
+    output_row,
+    passive_residues,
+    port_residues,
+    turn_diagonal,
+)
 from .box import BoxSamples, Patches, box_samples
 from .coverage import Rectangle, Spot, contact_patterns, spot_patterns
-from .element import POLES, Element, element, face_impedance
-from .patterns import JUMPS, basis_shares, basis_terms
+from .element import POLES, Element, compiled_impedance, element, seen_face
+from .patterns import FUNCTIONS, JUMPS, basis_shares, basis_terms
 from .samples import GRASP, OF_GRASP
 
 _WEIGHED = 3e4  # W/(m2 K) of the contact beside which errors of impedances are weighed
@@ -110,30 +119,84 @@ def tip_at(stack: SensorStack, spot: Spot, level: Resolution, covered: Rectangle
 
 
 def _tip(known: Element, covered: Rectangle, level: Resolution, basis: np.ndarray) -> Tip:
-    kept, (columns, decay) = basis.shape[1], _rates(level)
-    unit, shares, (drop_rest, heat_rest) = _unit(kept), basis_shares(basis), _rest(known)
-    rest = face_impedance(known, covered, shares, basis_terms(kept), unit, shown=False)
-    (x0, x1), (y0, y1) = covered
-    area, alone = (x1 - x0) * (y1 - y0), rest[:, 0, 0].copy()
-    rest[:, 0, 0] -= known.slow
-    weight = contact_weight(alone, area)
-    rates, ports, drop, heat = _element_states(
-        port_residues(columns, rest, weight),
-        weight,
-        GRASP,
-        decay,
+    kept, seen = basis.shape[1], seen_face(known, covered, shown=False)
+    unit, samples, functions = _unit(kept), len(GRASP), len(FUNCTIONS)
+    # few arrays: each that compiled code returns costs a microsecond
+    (rates, drop, heat), ports, told = _pressed(
+        basis,
+        JUMPS,
+        basis_terms(kept),
+        unit,
+        *_rates(level),
         level.least,
+        GRASP,
+        known.slow,
         known.rates,
         known.ports,
         known.drop,
         known.heat,
-        drop_rest,
-        heat_rest,
+        *_rest(known),
+        *seen,
     )
     side = ThermalNetwork.of_rates(rates, ports, {"drop": drop, "element": heat})
-    made = Tip(area, basis, unit[0], alone, side)
-    vars(made).update(weight=weight, shares=shares)  # they need not be found once more
+    made = Tip(seen[0], basis, unit[0], told[:samples], side)
+    along = 2 * samples + 2 * kept * functions
+    vars(made).update(  # they need not be found once more
+        weight=told[samples : 2 * samples],
+        shares=told[2 * samples : along].reshape(2, kept, functions),
+        jumps=told[along:].reshape(2, kept, -1),
+    )
     return made
+
+
+@njit(cache=True, error_model="numpy")
+def _pressed(
+    basis,
+    function_jumps,
+    terms,
+    gram,
+    columns,
+    decay,
+    least,
+    moments,
+    slow_part,
+    slow,
+    seen,
+    drops,
+    heats,
+    drop_rest,
+    heat_rest,
+    *face,
+):
+    """An element's states on the patterns of basis (P, M): (3, n) of rates, drop and heat, ports (n, M), and one after
+    the other its impedance (S,), Tip.weight (S,), shares (2, M, F) and jumps (2, M, E). function_jumps: JUMPS. columns:
+    fades of decay (K,) 1/s. slow_part (S,) K/W: of the slow states. face: as seen_face tells it. The rest as
+    in compiled_impedance and _element_states."""
+    kept, functions, nodes, samples = len(gram), len(function_jumps), function_jumps.shape[1], len(moments)
+    told = np.empty(2 * (samples + kept * (functions + nodes)))
+    alone, weight = told[:samples], told[samples : 2 * samples]
+    shares = told[2 * samples : 2 * (samples + kept * functions)].reshape(2, kept, functions)
+    jumps = told[2 * (samples + kept * functions) :].reshape(2, kept, nodes)
+    for axis in range(2):
+        for m in range(kept):
+            shares[axis, m, 0] = 1.0 if m == 0 else (basis[0, m] if axis == 0 else 0.0)
+            for f in range(1, functions):
+                of = f if axis == 0 else functions - 1 + f
+                shares[axis, m, f] = basis[of, m] if m > 0 else 0.0
+            for e in range(nodes):
+                jumps[axis, m, e] = 0.0
+                for f in range(functions):
+                    jumps[axis, m, e] += shares[axis, m, f] * function_jumps[f, e]
+    rest, area = compiled_impedance(shares, terms, gram, *face), face[0]
+    for s in range(samples):
+        alone[s] = rest[s, 0, 0]
+        weight[s] = 1 / (alone[s] + 1 / (_WEIGHED * area))
+        rest[s, 0, 0] -= slow_part[s]
+    found = compiled_residues(columns, rest, weight, False)
+    states, ports = _element_states(
+        found, weight, moments, decay, least, slow, seen, drops, heats, drop_rest, heat_rest
+    )
+    return states, ports, told
 
 
 @lru_cache(maxsize=16)
@@ -154,15 +217,23 @@ def _rest(known: Element) -> tuple[np.ndarray, np.ndarray]:
 
 
 def compile_tip_states() -> None:
-    """Compiles what makes a fingertip's network of residues, as `tip` calls it."""
-    samples, slow, decay = np.ones(len(GRASP)), np.ones(1), Resolution(2, 1).decay
-    _element_states(np.ones((1, 1, 2)), samples, GRASP, decay, 1.0, slow, slow, slow, slow, samples, samples)
+    """Compiles what makes a fingertip's network of its impedance, as `tip` does."""
+    samples, decay = np.ones(len(GRASP)), Resolution(2, 1).decay
+    rest, columns, slow = (
+        numba.typeof(np.ones((1, 1, 2))),
+        numba.typeof(np.ones((1, 1))),
+        numba.typeof(samples),
+    )
+    fixed = numba.typeof(decay)
+    compiled_residues.get_call_template((columns, rest, slow, numba.types.boolean), {})
+    arguments = (rest, slow, numba.typeof(GRASP), fixed, numba.types.float64, *(slow,) * 6)
+    _element_states.get_call_template(arguments, {})
 
 
-@njit(cache=True, short_loops=True, error_model="numpy")
+@njit(cache=True, inner=True, short_loops=True, error_model="numpy")
 def _element_states(found, weight, moments, decay, least, slow, seen, drops, heats, drop_rest, heat_rest):
-    """Rates, ports, drop and heat of an element's states: the slow ones of rates slow (K,), ports seen (K,), drops and
-    heats, then those of residues found (M, M, rates). The rest as in Resolution and Element."""
+    """Rates, drop and heat (3, n) and ports (n, M) of an element's states: the slow ones of rates slow (K,), ports seen
+    (K,), drops and heats, then those of residues found (M, M, rates). The rest as in Resolution and Element."""
     count, kept, samples = len(slow), len(found), len(moments)
     wanted = np.zeros((2, samples, kept))
     for s in range(samples):
@@ -175,8 +246,8 @@ def _element_states(found, weight, moments, decay, least, slow, seen, drops, hea
         jumps[1, 0] -= heats[k] * seen[k]
     fast, fast_ports = rate_states(found, decay, least / weight[-1])
     states = count + len(fast)
-    rates, ports = np.empty(states), np.zeros((states, kept))
-    drop, heat = np.empty(states), np.empty(states)
+    told, ports = np.empty((3, states)), np.zeros((states, kept))
+    rates, drop, heat = told[0], told[1], told[2]
     for k in range(count):
         rates[k], ports[k, 0], drop[k], heat[k] = slow[k], seen[k], drops[k], heats[k]
     for n in range(len(fast)):
@@ -188,7 +259,7 @@ def _element_states(found, weight, moments, decay, least, slow, seen, drops, hea
         row = least_row(moments, wanted[output], fast, fast_ports, errors, jumps[output], True)
         for n in range(len(fast)):
             into[count + n] = row[n]
-    return rates, ports, drop, heat
+    return told, ports
 
 
 def box_side(

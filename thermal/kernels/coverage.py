@@ -22,7 +22,7 @@ import numpy as np
 from ..matter import SensorStack
 from .box import Patches
 from .element import Element, Rectangle, element
-from .excited import CONDUCTANCES, Face, excited, shown_box, shown_element, shown_face
+from .excited import CONDUCTANCES, Face, excited, excited_alone, shown_box, shown_element
 from .patterns import EVENNESS, GRAM
 from .samples import SHOWN
 
@@ -200,10 +200,8 @@ def spot_patterns(known: Element, spot: Spot, kept: int) -> np.ndarray:
     they end where the opposite fingertip does."""
     made, contact = (spot.conductivity, spot.heat_capacity), spot.contact
     if spot.opposite is None or spot.depth >= THIN * known.stack.width:
-        half = contact.half
-        box = shown_face(Face(spot.sides, spot.depth, contact.centre, half), *made)
-        area = np.array([4 * half[0] * half[1]])
-        return excited(box, shown_element(known, contact.covered)[None], area, kept)[0]
+        face = Face(spot.sides, spot.depth, contact.centre, contact.half)
+        return excited_alone(face, *made, shown_element(known, contact.covered), kept)
     # one order for both of them, so that they are found together
     pair = min(contact, spot.opposite), max(contact, spot.opposite)
     return _patterns_of_both(known, made, (*spot.sides, spot.depth), pair, kept)[pair.index(contact)]

@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -179,19 +179,21 @@ def face_impedance(
     """(S, M, M) K/W between combinations of the patterns on a rectangle of the face, m from its corner: functions of
     shares (2, F', F) along the axes, whose products add up as terms (M, X, 2) say, as in along_axes. gram: (M, M),
     their products' means. At SHOWN, or at GRASP."""
+    return _impedance(shares, terms, gram, *seen_face(known, covered, shown))
+
+
+def seen_face(known: Element, covered: Rectangle, shown: bool) -> tuple[Any, ...]:
+    """What face_impedance takes of the rectangle."""
     layer, ((x0, x1), (y0, y1)) = known.stack.layers[-1], covered
     x, y = x1 - x0, y1 - y0
     sooner, diffusivity = times_sooner(min(x, y) / 2), layer.diffusivity
     of_sides = max(sooner, USUALLY_SOONER)
-    return _impedance(
+    return (
         x * y,
         *seen_side(known, x0, x1, of_sides),
         *seen_side(known, y0, y1, of_sides),
         of_sides - sooner,
         _few(known, shown),
-        shares,
-        terms,
-        gram,
         *element_rule(diffusivity, sooner, shown),
         layer.conductivity,
         diffusivity,
@@ -388,7 +390,15 @@ def _within(width, taus, early, centre, half, nodes, jumps, sums, within, below)
 
 
 @njit(cache=True, error_model="numpy")
-def _impedance(
+def _impedance(*told):
+    return compiled_impedance(*told)
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def compiled_impedance(
+    shares,
+    terms,
+    gram,
     area,
     within,
     below,
@@ -396,9 +406,6 @@ def _impedance(
     across_below,
     first,
     few,
-    shares,
-    terms,
-    gram,
     begun,
     times,
     to_moments,

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -51,17 +51,26 @@ def excited(box: np.ndarray, elements: np.ndarray, areas: np.ndarray, kept: int)
     return _excited(box, elements, areas, _CONDUCTANCES, _GRAM, _EVENNESS, _ORTHONORMAL, kept)
 
 
+def excited_alone(
+    touched: Face, conductivity: float, heat_capacity: float, element: np.ndarray, kept: int
+) -> np.ndarray:
+    """(P, M) of one contact on a box that nothing else touches. element: (S, P, P) K/W at SHOWN."""
+    seen, (half_x, half_y) = _seen_face(touched, conductivity, heat_capacity), touched.half
+    known = _CONDUCTANCES, _GRAM, _EVENNESS, _ORTHONORMAL
+    return _excited_alone(element, 4 * half_x * half_y, *known, kept, *seen)
+
+
 @lru_cache(maxsize=1024)
 def shown_element(known: Element, covered: Rectangle) -> np.ndarray:
     """(S, P, P) K/W of an element at SHOWN."""
     return face_impedance(known, covered, EACH_FUNCTION, _EACH_TERM, _GRAM, shown=True)
 
 
-def shown_face(touched: Face, conductivity: float, heat_capacity: float) -> np.ndarray:
-    """(S, P, P) K/W of a box under one patch at SHOWN. What the air takes changes no pattern to speak of."""
+def _seen_face(touched: Face, conductivity: float, heat_capacity: float) -> tuple[Any, ...]:
+    """What _of_face takes. What the air takes changes no pattern to speak of."""
     rule = rough_rule(conductivity / heat_capacity)
     (first, second), (x, y), (half_x, half_y) = touched.sides, touched.centre, touched.half
-    return _of_face(
+    return (
         _along(first, x, half_x, rule.begun),
         _along(second, y, half_y, rule.begun),
         4 * half_x * half_y,
@@ -112,7 +121,7 @@ def shown_box(
     return found + np.outer(port, port) / (_MOMENTS[:, None, None] + rate)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, inner=True, error_model="numpy")
 def _of_face(
     first,
     second,
@@ -129,8 +138,8 @@ def _of_face(
     early,
     moments,
 ):
-    """shown_face of a patch of m2 on a face of m2. first, second: (F, F, T) m along its axes. along: (P, 2), as ALONG.
-    The rest as in shown_face and Rule."""
+    """(S, P, P) K/W of a box under one patch at SHOWN, area m2 of a face of m2. first, second: (F, F, T) m along its
+    axes. along: (P, 2), as ALONG. depth: m of the box. The rest as in excited_alone and Rule."""
     known, count = len(gram), len(times)
     found, deep, kernel = np.empty((len(moments), known, known)), np.empty(count), np.empty(count)
     for t in range(count):
@@ -154,6 +163,15 @@ def _of_face(
                 value = early[s] * falling * gram[i, j] + slowest / moments[s]
                 found[s, i, j] = found[s, j, i] = value + dot(to_moments[s], kernel)
     return found
+
+
+@njit(cache=True, error_model="numpy")
+def _excited_alone(element, area, conductances, gram, evenness, orthonormal, kept, *face):
+    """_excited of one contact of m2 on a face, which is told as to _of_face."""
+    box, areas = _of_face(*face), np.empty(1)
+    areas[0] = area
+    elements = element.reshape(1, len(box), len(gram), len(gram))
+    return _excited(box, elements, areas, conductances, gram, evenness, orthonormal, kept)[0]
 
 
 @njit(cache=True, error_model="numpy")

@@ -93,16 +93,28 @@ def rough_rule(diffusivity: float) -> Rule:
 def _rule(diffusivity: float, moments: np.ndarray, spacing: float, begun: float) -> Rule:
     first = begun / diffusivity
     count = math.ceil(math.log(_LAST / float(moments[0]) / first) / spacing) + 1
-    steps, sooner = _steps(spacing)
-    times = first * steps[:count]
-    turned = moments[:, None] * times
-    to_moments = spacing * times * np.exp(-turned)
-    # each power of moment times first time, of what comes before
-    powers = np.full((len(moments), len(sooner)), first)
-    powers[:, 1:] = turned[:, :1]
-    flat, early = (np.multiply.accumulate(powers, axis=1) @ sooner).T
-    to_moments[:, 0] += flat
-    return Rule(begun, times, to_moments, early.copy())
+    table, early = np.empty((1 + len(moments), count)), np.empty(len(moments))
+    times, to_moments = table[0], table[1:]
+    _fill_rule(moments, spacing, first, *_steps(spacing), times, to_moments, early)
+    return Rule(begun, times, to_moments, early)
+
+
+@njit(cache=True, error_model="numpy")
+def _fill_rule(moments, spacing, first, steps, sooner, times, to_moments, early):
+    """Fills a Rule's times, to_moments and early, from time first s on. steps, sooner: _steps of that spacing."""
+    for t in range(len(times)):
+        times[t] = first * steps[t]
+    for s in range(len(moments)):
+        for t in range(len(times)):
+            to_moments[s, t] = spacing * times[t] * math.exp(-moments[s] * times[t])
+        # each power of moment times first time, of what comes before
+        power, flat, falling = first, 0.0, 0.0
+        for n in range(len(sooner)):
+            flat += power * sooner[n, 0]
+            falling += power * sooner[n, 1]
+            power *= moments[s] * first
+        to_moments[s, 0] += flat
+        early[s] = falling
 
 
 @lru_cache(maxsize=8)

@@ -20,12 +20,12 @@ import numpy as np
 from thermograsp.compiled import njit
 
 from ..matter import Material
-from ..numerics import free_residues, mirrored_residues, port_residues
+from ..numerics import compiled_residues, free_residues
 from .alone import alone
 from .axis import SWITCH
-from .box import Patches, box_kernel
+from .box import Patches, box_kernel, compiled_kernel
 from .contact import Resolution, Tip, fades
-from .patterns import basis_terms
+from .patterns import NODES, basis_terms
 from .samples import FEW_SPACING, GRASP, at_moments, grasp_rule
 
 _AT_ONCE = 6  # steps in which a patch's kernel by itself is told for few times or many
@@ -70,20 +70,6 @@ class UnderTips(NamedTuple):
     weight: np.ndarray
 
 
-class _Kernel(NamedTuple):
-    """kernel (T, A M, L M) K/J of what is touched and heat (T, L M) J/J, both less the slowest eigenfunction's part;
-    that one's rate, port (N M,) and held. begun m2, to_grasp, early: grasp_rule's."""
-
-    kernel: np.ndarray
-    heat: np.ndarray
-    rate: float
-    port: np.ndarray
-    held: float
-    begun: float
-    to_grasp: np.ndarray
-    early: np.ndarray
-
-
 def touched_box(box: TouchedBox, level: Resolution, under: UnderTips | None = None) -> BodyResidues:
     """A box's residues at the level's rates. under: what is known of its places under fingertips, or of others so near
     to these that it serves."""
@@ -96,17 +82,32 @@ def touched_box(box: TouchedBox, level: Resolution, under: UnderTips | None = No
     bare = under.bare
     if len(box.tips) == count:
         return bare
-    known, touched, fit = _kernel_of(box, count), len(bare.ports), _fit(level)
-    port = np.concatenate((bare.ports, known.port[touched:]))
+    material, size, film, patches, tips, _ = box
+    touched, fit, capacity = len(bare.ports), _fit(level), material.volumetric_heat_capacity
+    rule = grasp_rule(material.conductivity / capacity)
+    # with its film on the patches too, by those under no fingertip
+    kernel, _, exact, held, warmth = box_kernel(
+        size,
+        material.conductivity,
+        capacity,
+        film,
+        patches,
+        np.array([one.jumps for one in tips]),
+        basis_terms(level.patterns),
+        count,
+        rule.times,
+        count,
+    )
+    port = np.concatenate((bare.ports, exact[touched:]))
     residues, heat = np.empty((touched, len(port), level.rates)), np.zeros((len(port), level.rates))
     residues[:, :touched], heat[:touched] = bare.residues, bare.heat
-    total = np.concatenate([one.even for one in box.tips[count:]]) if box.film > 0 else np.zeros(0)
+    total = np.concatenate([one.even for one in tips[count:]]) if film > 0 else np.zeros(0)
     _beside(
-        known.kernel,
-        known.heat,
-        known.port,
-        known.to_grasp,
-        known.early,
+        kernel,
+        np.zeros((len(rule.times), kernel.shape[2])) if warmth is None else warmth,
+        exact,
+        rule.to_moments,
+        rule.early,
         port,
         bare.held,
         bare.rate,
@@ -126,34 +127,41 @@ def touched_box(box: TouchedBox, level: Resolution, under: UnderTips | None = No
 
 def under_tips(box: TouchedBox, level: Resolution) -> UnderTips:
     """Of a box all of whose patches are under fingertips."""
-    known, material, fit = _kernel_of(box, 0), box.material, _fit(level)
-    capacity = material.volumetric_heat_capacity
-    # before the first time a patch by itself is on a half-space
-    alone = 1 / (capacity * math.sqrt(math.pi * known.begun))
-    port, held = known.port, known.held
-    rest, warmth, weight, rate, opened, returned = _samples(
-        known.kernel,
-        known.heat,
-        port,
-        known.to_grasp,
-        known.early,
+    material, size, film, patches, tips, _ = box
+    capacity, fit = material.volumetric_heat_capacity, _fit(level)
+    diffusivity = material.conductivity / capacity
+    begun, times, to_grasp, early = grasp_rule(diffusivity)
+    images = math.log(SWITCH * max(size) ** 2 / begun) / FEW_SPACING  # times at which these serve, about
+    soon = _AT_ONCE * (max(int(images) + 2, 0) // _AT_ONCE + 1)
+    halves = zip(tips, patches.half.tolist(), strict=True)
+    rates, port, held, residues, rows, (opened, returned), weight = _under(
+        np.array(size),
+        film / material.conductivity,
+        capacity,
+        diffusivity,
+        times,
+        *patches,
+        NODES,
+        np.array([one.jumps for one in tips]),
+        np.array([_free(one, (x, y), begun, soon) for one, (x, y) in halves]),
+        basis_terms(level.patterns),
+        to_grasp,
+        early,
         GRASP,
-        alone,
-        box.patches.half,
-        known.rate,
-        held,
-        box.film,
-        np.array([one.weight for one in box.tips]),
+        # before the first time a patch by itself is on a half-space
+        1 / (capacity * math.sqrt(math.pi * begun)),
+        film,
+        np.array([one.weight for one in tips]),
+        fit.fades,
+        _mirrored(box),
+        np.concatenate([one.even for one in tips]),
+        capacity * math.prod(size),
+        fit.seen,
+        fit.share,
     )
-    found = (mirrored_residues if _mirrored(box) else port_residues)(fit.fades, rest, weight)
-    if box.film > 0:
-        even = np.concatenate([one.even for one in box.tips])
-        whole = capacity * math.prod(box.size)
-        heat, still = _warmed(found, warmth, even, port, held, whole, fit.seen, fit.share)
-    else:
-        heat, still = np.zeros((len(port), level.rates)), np.zeros(level.rates)
-    bare = BodyResidues(rate, port, held, found, heat, still)
-    return UnderTips(bare, opened, returned, known.rate, weight)
+    return UnderTips(
+        BodyResidues(rates[0], port, held, residues, rows[:-1], rows[-1]), opened, returned, rates[1], weight
+    )
 
 
 def _mirrored(box: TouchedBox) -> bool:
@@ -162,25 +170,6 @@ def _mirrored(box: TouchedBox) -> bool:
         return False
     face, centre, half = (each.tolist() for each in box.patches)
     return face[0] == face[1] ^ 1 and centre[0] == centre[1] and half[0] == half[1]
-
-
-def _kernel_of(box: TouchedBox, first: int) -> _Kernel:
-    """Of a box with its film on the patches too, by those from number `first` on."""
-    material, size, film, patches, tips, touched = box
-    capacity = material.volumetric_heat_capacity
-    jumps, terms = np.array([one.jumps for one in tips]), basis_terms(tips[0].basis.shape[1])
-    diffusivity, free = material.conductivity / capacity, None
-    begun, times, to_grasp, early = grasp_rule(diffusivity)
-    if first == 0:
-        images = math.log(SWITCH * max(size) ** 2 / begun) / FEW_SPACING  # times at which these serve, about
-        count = _AT_ONCE * (max(int(images) + 2, 0) // _AT_ONCE + 1)
-        halves = zip(tips, patches.half.tolist(), strict=True)
-        free = np.array([_free(one, (x, y), begun, count) for one, (x, y) in halves])
-    kernel, rate, port, held, heat = box_kernel(
-        size, material.conductivity, capacity, film, patches, jumps, terms, touched, times, first, free
-    )
-    heat = np.zeros((len(times), kernel.shape[2])) if heat is None else heat
-    return _Kernel(kernel, heat, rate, port, held, begun, to_grasp, early)
 
 
 @lru_cache(maxsize=1024)
@@ -195,6 +184,54 @@ def _steps(count: int) -> np.ndarray:
 
 
 @njit(cache=True, error_model="numpy")
+def _under(
+    size,
+    outside,
+    capacity,
+    diffusivity,
+    times,
+    face,
+    centre,
+    half,
+    nodes,
+    jumps,
+    free,
+    terms,
+    to_grasp,
+    early,
+    moments,
+    alone,
+    film,
+    weight,
+    columns,
+    mirrored,
+    even,
+    whole,
+    seen,
+    share,
+):
+    """What under_tips tells: the slowest rate, and that under a film that covers the patches too; ports, held,
+    residues; rows (A M + 1, K) of the heat, the last of what follows the air; opened and returned; weight. outside:
+    1/m, the film over the conductivity. capacity: J/(m3 K), and whole: J/K, the box's. alone: K m2/J. columns: fades.
+    The rest as in compiled_kernel, _samples and _warmed."""
+    taus = np.empty(len(times))
+    for t in range(len(times)):
+        taus[t] = diffusivity * times[t]
+    kernel, slowest, port, held, heat = compiled_kernel(
+        size, outside, capacity, taus, face, centre, half, nodes, jumps, free, terms, len(face), 0
+    )
+    slowest *= diffusivity
+    rest, warmth, counts, lasting, opened, returned = _samples(
+        kernel, heat, port, to_grasp, early, moments, alone, half, slowest, held, film, weight
+    )
+    found = compiled_residues(columns, rest, counts, mirrored)
+    rows = np.zeros((len(port) + 1, len(share)))
+    if film > 0.0:
+        _warmed(found, warmth, even, port, held, whole, seen, share, rows[:-1], rows[-1])
+    return (lasting, slowest), port, held, found, rows, (opened, returned), counts
+
+
+@njit(cache=True, inner=True, error_model="numpy")
 def _samples(kernel, heat, port, to_grasp, early, moments, alone, half, rate, held, film, weight):
     """What at_moments and _shielded tell of patches of half widths (A, 2) m under a film of W/(m2 K). alone: K m2/J.
     weight: (A, S)."""
@@ -367,14 +404,13 @@ def _balanced(row, total, share):
             row[k] += left * share[k]
 
 
-@njit(cache=True, error_model="numpy")
-def _warmed(found, heat, even, port, held, capacity, seen, share):
-    """Rows (A M, K) of the heat (S, A M) that follows each port's flow: with the slowest state's, of port (A M,) and
-    held, they add up to what goes in, even (A M,). And (K,) J/K of what follows the air: with the slowest state's they
-    add up to the box's capacity; a rate's share is what the touched ports tell, its heat row squared over its
-    resistance, as in a state. found: (A M, A M, K). seen, share: as in _Fit."""
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
+def _warmed(found, heat, even, port, held, capacity, seen, share, rows, still):
+    """Adds to rows (A M, K) of the heat (S, A M) that follows each port's flow: with the slowest state's, of port
+    (A M,) and held, they add up to what goes in, even (A M,). And to still (K,) J/K of what follows the air: with the
+    slowest state's they add up to the box's capacity; a rate's share is what the touched ports tell, its heat row
+    squared over its resistance, as in a state. found: (A M, A M, K). seen, share: as in _Fit."""
     rates, count = len(share), len(found)
-    rows, still = np.zeros((count, rates)), np.zeros(rates)
     for j in range(count):
         for s in range(len(heat)):
             for k in range(rates):
@@ -392,4 +428,3 @@ def _warmed(found, heat, even, port, held, capacity, seen, share):
     scale = max(capacity - held * held, 0.0) / whole if whole > 0.0 else 0.0
     for k in range(rates):
         still[k] *= scale
-    return rows, still

@@ -99,6 +99,8 @@ class Material(Conductor):
     sources: Mapping[str, str] = field(default_factory=dict, kw_only=True, compare=False, repr=False)
 
     def __post_init__(self) -> None:
+        if not isinstance(self.name, str) or not self.name:
+            raise InvalidValueError(f"a material needs a name, by which it is told of, got {self.name!r}")
         for name, unit in UNITS.items():
             value = getattr(self, name)
             if value is None and name not in _REQUIRED:

@@ -63,6 +63,11 @@ class Reservoir:
         for name in ("temperature", "setpoint", "melting"):
             if getattr(self, name) is not None:
                 celsius(f"reservoir: {name} (°C)", getattr(self, name))
+        if self.setpoint is not None and self.power == 0:
+            raise InvalidValueError(
+                f"reservoir: a setpoint of {self.setpoint:g} °C is where a heater rests, and there is none: give its "
+                "power in W, or leave setpoint out; one of infinite heat_capacity is held at its temperature"
+            )
         if np.isinf(self.heat_capacity) and (self.power or self.latent_heat):
             raise InvalidValueError(
                 "reservoir: one of infinite heat_capacity is held at its temperature and takes no power or latent_heat"
@@ -120,7 +125,13 @@ def reservoir_step(reservoir, enthalpy, flow, duration):
 
 def water(mass: float, conductance: float, temperature: float | None = None) -> Reservoir:
     """Water, kg, behind a film of `conductance` W/K. Free convection in hot water gives some 500 W/(m2 K) on the wetted
-    wall: Nu = .59 Ra^(1/4) over 5 cm with 10 K between them (Incropera et al., equation 9.24)."""
+    wall: Nu = .59 Ra^(1/4) over 5 cm with 10 K between them (Incropera et al., equation 9.24). Raises InvalidValueError
+    for a temperature at which it is ice or steam."""
+    if temperature is not None and not 0.0 <= celsius("temperature (°C)", temperature) <= 100.0:
+        raise InvalidValueError(
+            f"water is liquid from 0 to 100 °C, got a temperature of {temperature:g}: for ice use ice(mass, "
+            "conductance), for what is colder or hotter a Reservoir of its own heat_capacity"
+        )
     return Reservoir(positive("mass (kg)", mass) * WATER_SPECIFIC_HEAT, conductance, temperature)
 
 

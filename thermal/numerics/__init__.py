@@ -10,7 +10,13 @@ from .laplace import invert, invert_many, windows
 from .namespace import Array, as_integers, as_like, namespace_of
 from .outputs import least_row, output_row
 from .passive import ThermalNetwork
-from .passive_residues import free_residues, mirrored_residues, passive_residues, port_residues
+from .passive_residues import (
+    compiled_residues,
+    free_residues,
+    mirrored_residues,
+    passive_residues,
+    port_residues,
+)
 from .reduction import Sampled, hankel_values, interpolate, sampled_fields, truncate
 from .symmetric import dot, factor, solve_factored, turn_diagonal
 
@@ -35,6 +41,7 @@ __all__ = [
     "ThermalNetwork",
     "as_integers",
     "as_like",
+    "compiled_residues",
     "dot",
     "erfc_inverse",
     "factor",

@@ -62,7 +62,7 @@ class ThermalNetwork:
     ) -> ThermalNetwork:
         """One without a direct term, of rates that are known to be passive and arrays that fit: only what is not
         finite is looked for. For callers who make thousands."""
-        if not math.isfinite(ports.sum()):
+        if not math.isfinite(np.vdot(ports, ports)):
             raise InvalidValueError("ports must be finite")
         made = object.__new__(cls)
         for name, value in (("rates", rates), ("ports", ports), ("outputs", outputs)):

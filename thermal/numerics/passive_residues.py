@@ -41,7 +41,12 @@ def mirrored_residues(columns: np.ndarray, wanted: np.ndarray, weight: np.ndarra
 
 
 @njit(cache=True, error_model="numpy")
-def _residues(columns, wanted, weight, mirrored):
+def _residues(*told):
+    return compiled_residues(*told)
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def compiled_residues(columns, wanted, weight, mirrored):
     """port_residues, or mirrored_residues, whose two problems end together."""
     samples, wide = (
         len(columns),

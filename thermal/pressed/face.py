@@ -25,13 +25,12 @@ from ..contact import (
     FIRST_FORCE,
     FORCE_STEP,
     FORCES,
-    SPOT_ON_SKIN,
     Beneath,
     Pad,
     conductance,
     constricted,
     flows_of_line,
-    flows_of_spot,
+    through_soft,
     widened,
 )
 from .crown import CURVED, LINE, at_edge, compact, crown_at, hertz_contact
@@ -74,7 +73,7 @@ def pressed(pad: Pad, ring: Ring | None, law: np.void, where: Seen) -> np.ndarra
     """(FORCES, rows, columns, 2): m2 that touch of the sensor's face, or of a ring around it, and their share of the
     force. pad: with its springs. law: of face_footprint; a bare face is rigid."""
     touched = where.room(2)
-    _press(*_arguments(pad, ring, law, where), Beneath(0.0, 0.0, 0.0), touched)
+    _press(*_arguments(pad, ring, law, where), Beneath(0.0, 0.0, 0.0, 0.0, 0.0), touched)
     return touched
 
 
@@ -245,17 +244,19 @@ def _conduct(points, near, count, what, area, load, where, law, below, crown, sh
         gas, less, around = conducts * around.s, conducts * less, mixed(around, conducts, around, 0.0)
     total, wide, whole = solid + gas, area, area
     freely = gas
-    if gas > 0.0 or (given > 0.0 and law.mean_gap > 0.0):
+    if gas > 0.0:
+        rest = max(face * face - area, 0.0)
+        whole += min(gas * less * resistance / (gas - less), rest) if gas > less else rest
+        wide = whole
+        if area > 0.0 and not rigid:
+            solid = through_soft(solid, gas, area, max(row[4], area / row[4]), face, whole, below)
+            total = solid + gas
+    if rigid and (gas > 0.0 or (given > 0.0 and law.mean_gap > 0.0)):
         # what would flow under the contact without force is as wide as beside a constricted one, and no less where all
         # of a body that gives way has come to touch
         freely, row[5] = min(gas + law.gas / law.mean_gap * area, total), row[4]
     if gas > 0.0:
-        rest = max(face * face - area, 0.0)
-        wide += min(gas * less * resistance / (gas - less), rest) if gas > less else rest
-        whole = wide
-        if not rigid:
-            wide = area + (wide - area) * gas / freely
-        elif of_line > 0.0:
+        if of_line > 0.0:
             # what gives way without constricting heat spreads as under a skin
             wide = area + (wide - area) * (1.0 - given * (1.0 - gas / freely))
         lie(mixed(around, wide / gas, around, 0.0), *where, least, found)
@@ -266,13 +267,9 @@ def _conduct(points, near, count, what, area, load, where, law, below, crown, sh
         # on a rigid face of a line, since a spot's constriction is told
         apart = (1.0 - compact(round)) * (1.0 - min(curved, 1.0)) if rigid else 1.0
         if gas > 0.0 and area > 0.0 and apart > 0.0 and total - freely > _FEW * total:
+            flows = whole
             if rigid:
                 flows = flows_of_line(total - freely, freely, area, whole, below, min(long, face))
-            else:
-                long = min(max(row[4], area / row[4]), face)
-                spot = min(SPOT_ON_SKIN * (1.0 - long / face), 1.0)
-                flows = (1.0 - spot) * flows_of_line(total - freely, freely, area, whole, below, long)
-                flows += spot * flows_of_spot(solid, gas, area, whole, below)
             if flows > patch:
                 patch += apart * (flows - patch)
                 small, wide = widened(total - freely, freely, area, whole, patch)

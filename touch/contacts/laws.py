@@ -134,9 +134,11 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
                 laws["narrowing"][f, g] = narrowing(other.face, pad.face)
             if sum(pad.curvature) + sum(other.curvature) > 0:
                 below = beneath(material("alumina"), pad.skin)
-                more = 0.0 if other.skin is None else other.skin.resistance
+                if other.skin is not None:
+                    more, thicker = other.skin.resistance, other.skin.thickness
+                    below = below._replace(sheet=below.sheet + more, thick=below.thick + thicker)
                 for axis in range(3):
-                    _tell_beside(laws[f, g, axis], faces, below._replace(sheet=below.sheet + more))
+                    _tell_beside(laws[f, g, axis], faces, below)
     for number, pairs in enumerate(made.values(), len(tables)):
         for pair in pairs:
             numbers[pair] = number
@@ -157,7 +159,8 @@ def pair_laws(model: mujoco.MjModel, pads: Sequence[PadPlace], shapes: Sequence[
 def _tell_beside(law: np.void, faces: Joint, below: Beneath) -> None:
     """Tells a law of round bodies what is beside their contact."""
     law["mean_gap"] = mean_gap(faces)
-    law["straight"], law["series"], law["sheet"] = below
+    for name, value in below._asdict().items():
+        law[name] = value
 
 
 def _rings(pad: PadPlace) -> tuple[Ring, ...]:

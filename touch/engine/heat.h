@@ -56,7 +56,7 @@ enum { VOLTAGE, READING, PREVIOUS, INTEGRAL, CUT, CHANGE, CHAIN };
 
 typedef struct {
   double area, share, size[2], across[2], ratio, stiffness, half_pad, half_face, pad_length, face_length, narrowing,
-      mean_gap, straight, series, sheet, spot_scale, spot_power, spot_most, gas, jump, flatness, roughness, log_hardness, log_elastic_hardness, elastic_share, shape;
+      mean_gap, straight, deep, series, sheet, thick, spot_scale, spot_power, spot_most, gas, jump, flatness, roughness, log_hardness, log_elastic_hardness, elastic_share, shape;
 } Law;
 
 /* two round surfaces that touch, see thermal/contact/gas_beside.py */
@@ -73,7 +73,9 @@ enum {
   POLES = 3,      /* pairs, of a step */
   SERIES = 13,    /* terms of the separation of rough faces */
   WIDTHS = 13,    /* widths in a table of narrow contacts */
-  SPREAD = 4 * WIDTHS * WIDTHS /* and contacts of which it tells */
+  SPREAD = 4 * WIDTHS * WIDTHS, /* and contacts of which it tells */
+  SHARED = 4, /* contacts of a face that know of one another */
+  FACE_MODES = 7 /* half waves, from none on, along each axis of a face that contacts hear one another by */
 };
 
 typedef struct {
@@ -86,9 +88,11 @@ typedef struct {
   int links;                     /* of the longest chain behind an element */
   int named;                     /* geoms in the attribute "geoms"; roles: of each, the fingertip, or F plus its number among G */
   double timestep, dt, least;
-  const double *roles, *pads, *boxes, *owner, *narrow, *ripples, *spread, *tip_rates, *tip_ports, *tip_drop, *tip_basis, *tip_weight, *tip_area;
+  const double *roles, *pads, *pad_kinds, *boxes, *owner, *narrow, *ripples, *spread, *modes, *tip_rates, *tip_ports, *tip_drop, *tip_basis, *tip_weight, *tip_area;
   const double* seebeck;         /* V/K */
-  /* narrow: (spreads, SPREAD, K), ripples: K/W m2 of each one's face, and spread: the numbers of each pair, of the pad and of its target across each axis */
+  /* narrow: (spreads, SPREAD, K), ripples: K/W m2 of each one's face, and spread: the numbers of each pair, of the pad,
+     of its target across each axis, and of that where all of it is pressed from behind; modes: (FACE_MODES, FACE_MODES, K) of
+     each sensor */
   const double *glued, *glued_laws, *first; /* GLUED of each element, Law of each pad on it; K above the air at first */
   const double *backs, *back_first, *back_decay, *back_heat; /* Back, CHAIN + links, (links, links) and links each */
   const double *tip_element, *tip_uniform; /* J, and states where all is 1 K warm */
@@ -158,6 +162,10 @@ bool heat_march(const Numbers* numbers, Work* work, State* state);
 then seen from where its back has gone. */
 void heat_behind(const Numbers* numbers, int f, double drawn, double force, double drop, double* at, double* x);
 
+void heat_share_faces(const Numbers* numbers, const Work* work, const State* state, int pairs, const int* pair, const double* own,
+                      double* roots, double* resistance, double* difference, int* order, int* members, double* lower, double* mutual);
+
+double heat_offset_of(double share, double length, double width);
 double heat_conductance(const Law* law, const Numbers* numbers, double pressure);
 void heat_contact(const Law* law, double force, const double place[3], double* area, double* share);
 double heat_flat_patch(const Law* law, double area, const double place[3], double width, double shares[4]);

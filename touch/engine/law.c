@@ -36,6 +36,12 @@ static double patch_offset(double offset, double length, double width) {
   return lesser(log(aside) / log(near), 1);
 }
 
+double heat_offset_of(double share, double length, double width) {
+  if (!is_narrow(length, width)) return 0;
+  double near = sin(HALF_TURN * length / (2 * width));
+  return lesser(acos(exp(lesser(greater(share, 0), 1) * log(near))) * width / HALF_TURN, (width - length) / 2);
+}
+
 static double patch_ends(double middle, double pad, double length, double side, double width) {
   if (!is_narrow(length, width)) return 1;
   double whole = greater(side / 2 - fabs(pad), lesser(side, width) / 2), near = greater(side / 2 - fabs(middle), length / 2);

@@ -156,9 +156,10 @@ static void solve(int m, Complex* matrix, Complex* x) {
   }
 }
 
-/* A step of every field; of each closed contact its sides, resistance K/W and difference K. through: its mean flow W. */
-static void step(const Numbers* numbers, const Work* work, const State* state, int pairs, const Side* sides,
-                 const double* resistance, const double* difference, double* through) {
+/* A step of every field; of each closed contact its sides, resistance K/W and difference K. mutual: (pairs, SHARED)
+K/W of each with those that share its face and stand before it, of which order and members tell. through: its mean flow W. */
+static void step(const Numbers* numbers, const Work* work, const State* state, int pairs, const Side* sides, const double* resistance,
+                 const double* difference, const int* order, const int* members, const double* mutual, double* through) {
   int patterns = numbers->patterns, m = pairs * patterns;
   Complex *matrix = work->matrix, *flow = matrix + (size_t)m * m, poles = at_poles(numbers->poles, 1);
   join(numbers, work, sides, pairs);
@@ -170,6 +171,11 @@ static void step(const Numbers* numbers, const Work* work, const State* state, i
     if (j % patterns == 0) flow[j] = plus(flow[j], difference[j / patterns], one);
     matrix[j * m + j] = plus(matrix[j * m + j], resistance[j / patterns], one);
   }
+  for (int i = 0; i < pairs; i++)
+    for (int b = 0; b < order[i]; b++) {
+      Complex* at = matrix + (size_t)i * patterns * m + members[i * SHARED + b] * patterns;
+      *at = plus(*at, mutual[i * SHARED + b], one);
+    }
   solve(m, matrix, flow);
   Complex weights = plus((Complex){0}, 2 * numbers->dt, at_poles(numbers->weights, 0));
   for (int j = 0; j < m; j++) {
@@ -212,8 +218,6 @@ static int before(double ratio, double* share) {
   return at;
 }
 
-#define WHOLE 0.9 /* of the face, from which on an object counts as being under all of it */
-
 /* The share of a sensor's face under which an object is, at the place that is in use, and the axis across it. */
 static double covered(const Numbers* numbers, const State* state, int f, int o, int* axis) {
   int number = (int)state->current[f * numbers->objects + o];
@@ -224,17 +228,38 @@ static double covered(const Numbers* numbers, const State* state, int f, int o, 
   double share = 1;
   for (int i = 0; i < AXES; i++)
     if (i != *axis) share *= lesser(box[i] / width, 1);
-  return share;
+  return greater(rint(64 * share), 1) / 64;
 }
 
-/* Fills root with the b_k of a narrow contact; false where it is as wide as the face. axis: across the object's face.
-   share: of the face on the object, from less than all of which its network knows how heat spreads. */
-static bool spread(const Numbers* numbers, int pair, const double* touch, int axis, double share, double* root) {
+/* The largest share, in eighths, that the contact of another pad of the same kind covers of what lies behind a contact's
+   face; as touch/heat/narrow.py. */
+static double pressed_behind(const Numbers* numbers, const State* state, const int* pair, int pairs, int f, int o) {
+  int objects = numbers->objects, own = (int)state->current[f * objects + o];
+  if (own < 0) return 0;
+  const double* place = state->places + (o * numbers->places + own) * SLOT;
+  double width = numbers->pads[f * PAD + WIDTH], most = 0;
+  for (int j = 0; j < pairs; j++) {
+    int g = pair[j] / numbers->targets, number;
+    if (g == f || numbers->pad_kinds[g] != numbers->pad_kinds[f] || pair[j] % numbers->targets != o || (number = (int)state->current[g * objects + o]) < 0) continue;
+    const double* other = state->places + (o * numbers->places + number) * SLOT;
+    if ((int)other[FACE] != ((int)place[FACE] ^ 1)) continue;
+    double covers = 1;
+    for (int i = 0; i < 2; i++) covers *= greater(1 - fabs(other[MIDDLE + i] - place[MIDDLE + i]) / width, 0);
+    most = greater(most, rint(8 * covers) / 8);
+  }
+  return most;
+}
+
+/* Fills root with the b_k of a narrow contact, and own with the squares of the pad's side; false where it is as wide as the
+   face. axis: across the object's face. share: of the face on the object, from less than all of which its network knows how
+   heat spreads. behind: the share that is pressed from the other side. */
+static bool spread(const Numbers* numbers, int pair, const double* touch, int axis, double share, double behind, double* own, double* root) {
   if (!(touch[AREA] > 0)) return false;
   int tip = pair / numbers->targets, other_tip = pair % numbers->targets - numbers->objects, rates = numbers->rates;
   double area = touch[AREA] / touch[CLOSED];
   bool any = false;
-  int all = (int)lesser(greater(ceil(2 * log2(1 / greater(share, 1e-3))), 1), WIDTHS - 1);
+  double way;
+  int all = before(1 / share, &way);
   memset(root, 0, sizeof(double) * rates);
   for (int side = 0; side < 2; side++) {
     double width = numbers->pads[(side && other_tip >= 0 ? other_tip : tip) * PAD + WIDTH], u, v;
@@ -243,21 +268,29 @@ static bool spread(const Numbers* numbers, int pair, const double* touch, int ax
     if (!(first > 0 && second > 0 && lesser(first, second) < width * (1 - 1e-9))) continue;
     int i = before(width / first, &u), j = before(width / second, &v);
     any = true;
-    const double* table = numbers->narrow + (size_t)numbers->spread[(1 + AXES) * pair + (side ? 1 + axis : 0)] * SPREAD * rates;
     double one = lesser(greater(touch[ASIDE + 2 * side] / touch[AREA], 0), 1);
     double other = lesser(greater(touch[ASIDE + 2 * side + 1] / touch[AREA], 0), 1);
-    for (int corner = 0; corner < 16; corner++) {
-      int a = corner & 1, b = corner >> 1 & 1, c = corner >> 2 & 1, d = corner >> 3;
-      double weight = (a ? one : 1 - one) * (b ? other : 1 - other) * (c ? u : 1 - u) * (d ? v : 1 - v);
+    for (int place = 0; place < 4; place++) {
+      int a = place & 1, b = place >> 1;
+      double weight = (a ? one : 1 - one) * (b ? other : 1 - other), values[rates];
       if (!(weight > 0)) continue;
-      const double *places = table + (2 * a + b) * WIDTHS * WIDTHS * rates, *row = places + ((i + c) * WIDTHS + j + d) * rates;
-      if (!side || share > WHOLE) {
-        for (int k = 0; k < rates; k++) root[k] += weight * row[k];
-        continue;
+      memset(values, 0, sizeof values);
+      for (int pinched = 0; pinched < 2; pinched++) {
+        double part = side ? (pinched ? behind : 1 - behind) : !pinched;
+        if (!(part > 0)) continue;
+        int number = (1 + 2 * AXES) * pair + (side ? 1 + axis + AXES * pinched : 0);
+        const double* known = numbers->narrow + ((size_t)numbers->spread[number] * SPREAD + (2 * a + b) * WIDTHS * WIDTHS) * rates;
+        const double *near = known + (i * WIDTHS + j) * rates, *far = near + WIDTHS * rates;
+        const double *along = known + all * WIDTHS * rates, *beside = known + all * rates;
+        for (int k = 0; k < rates; k++) {
+          values[k] += part * ((1 - u) * ((1 - v) * near[k] + v * near[k + rates]) + u * ((1 - v) * far[k] + v * far[k + rates]));
+          if (side && share < 1) /* less what the network knows */
+            values[k] -= part * greater((1 - way) * along[k] + way * along[k + WIDTHS * rates], (1 - way) * beside[k] + way * beside[k + rates]);
+        }
       }
-      const double *along = places + all * WIDTHS * rates, *beside = places + all * rates;
-      for (int k = 0; k < rates; k++) root[k] += weight * greater(row[k] - greater(along[k], beside[k]), 0);
+      for (int k = 0; k < rates; k++) root[k] += weight * greater(values[k], 0);
     }
+    if (!side) memcpy(own, root, sizeof(double) * rates);
   }
   for (int k = 0; k < rates; k++) root[k] = sqrt(root[k]);
   return any;
@@ -282,7 +315,10 @@ bool heat_march(const Numbers* numbers, Work* work, State* state) {
     if (state->touches[i * COLUMNS + CONDUCTANCE] > 0) pair[pairs++] = i;
   Side sides[2 * pairs + 1]; /* never empty */
   double resistance[pairs + 1], difference[pairs + 1], through[pairs + 1], roots[pairs * rates + 1];
+  double own[pairs * rates + 1], lower[pairs * SHARED * rates + 1], mutual[pairs * SHARED + 1];
+  int order[pairs + 1], members[pairs * SHARED + 1];
   memset(roots, 0, sizeof roots);
+  memset(own, 0, sizeof own);
   for (int i = 0; i < pairs; i++) {
     int f = pair[i] / targets, t = pair[i] % targets;
     const double *touch = state->touches + pair[i] * COLUMNS, *states = state->narrow + pair[i] * rates;
@@ -293,9 +329,10 @@ bool heat_march(const Numbers* numbers, Work* work, State* state) {
     difference[i] = warm(numbers, state, f) - (t >= objects ? warm(numbers, state, t - objects) : 0);
     int axis = 0;
     double share = t < objects ? covered(numbers, state, f, t, &axis) : 1;
-    const double* faces = numbers->spread + (1 + AXES) * pair[i];
+    double behind = t < objects ? pressed_behind(numbers, state, pair, pairs, f, t) : 0;
+    const double* faces = numbers->spread + (1 + 2 * AXES) * pair[i];
     resistance[i] += rippled(numbers, touch, numbers->ripples[(int)faces[0]] + numbers->ripples[(int)faces[1 + axis]]);
-    if (!spread(numbers, pair[i], touch, axis, share, root)) continue;
+    if (!spread(numbers, pair[i], touch, axis, share, behind, own + i * rates, root)) continue;
     for (int k = 0; k < rates; k++) {
       double part = work->grown[k] / numbers->dt; /* of a state that fades, over the step */
       difference[i] -= root[k] * part * states[k];
@@ -305,12 +342,17 @@ bool heat_march(const Numbers* numbers, Work* work, State* state) {
   double drawn[tips];
   for (int f = 0; f < tips; f++) drawn[f] = backs[f].moves != 0 ? -row(numbers, numbers->tip_element, f, field(numbers, state, objects + f)) : 0;
   if (!has_room(work, (size_t)pairs * numbers->patterns)) return false;
-  step(numbers, work, state, pairs, sides, resistance, difference, through);
+  heat_share_faces(numbers, work, state, pairs, pair, own, roots, resistance, difference, order, members, lower, mutual);
+  step(numbers, work, state, pairs, sides, resistance, difference, order, members, mutual, through);
   for (int i = 0; i < tips * targets; i++)
     for (int k = 0; k < rates; k++) state->narrow[i * rates + k] *= work->kept[k];
   for (int i = 0; i < pairs; i++)
     for (int k = 0; k < rates; k++)
       state->narrow[pair[i] * rates + k] += work->grown[k] * roots[i * rates + k] * through[i];
+  for (int i = 0; i < pairs; i++)
+    for (int b = 0; b < order[i]; b++)
+      for (int k = 0; k < rates; k++)
+        state->narrow[pair[members[i * SHARED + b]] * rates + k] += work->grown[k] * lower[(i * SHARED + b) * rates + k] * through[i];
   for (int f = 0; f < tips; f++) {
     double *x = field(numbers, state, objects + f), drop = row(numbers, numbers->tip_drop, f, x), force = 0;
     double* at = state->backs + f * (CHAIN + numbers->links);

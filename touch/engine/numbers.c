@@ -8,9 +8,9 @@
 
 #include "heat.h"
 
-enum { VERSION = 17, HEADER = 17, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32,
+enum { VERSION = 20, HEADER = 17, MOST_TIPS = 32, MOST_OBJECTS = 64, MOST_GEOMS = 4096, MOST_STATES = 256, MOST_RATES = 32,
        MOST_TABLES = 4096, MOST_VIEWS = 256, MOST_LINKS = 256,
-       MOST_SPREADS = (1 + AXES) * MOST_TIPS * (MOST_OBJECTS + MOST_TIPS) };
+       MOST_SPREADS = (1 + 2 * AXES) * MOST_TIPS * (MOST_OBJECTS + MOST_TIPS) };
 
 static bool decode(const char* text, size_t count, double* out) {
   if (strspn(text, "0123456789abcdef") != 16 * count) return false;
@@ -76,6 +76,7 @@ const char* heat_parse(Numbers* n, const char* text) {
       {&n->roles, n->named},
       {&n->owner, geoms},
       {&n->pads, (size_t)tips * PAD},
+      {&n->pad_kinds, tips},
       {&n->boxes, (size_t)objects * BOX},
       {&n->laws, (size_t)fingers * partners * 3 * (sizeof(Law) / sizeof(double))},
       {&n->curved, (size_t)fingers * partners * n->sides},
@@ -86,7 +87,8 @@ const char* heat_parse(Numbers* n, const char* text) {
       {&n->bent, (size_t)n->tables * CURVED},
       {&n->narrow, (size_t)n->spreads * SPREAD * n->rates},
       {&n->ripples, n->spreads},
-      {&n->spread, (size_t)tips * n->targets * (1 + AXES)},
+      {&n->spread, (size_t)tips * n->targets * (1 + 2 * AXES)},
+      {&n->modes, (size_t)tips * FACE_MODES * FACE_MODES * n->rates},
       {&n->bends, (size_t)fingers * BEND},
       {&n->curves, (size_t)partners * 3 * CURVES},
       {&n->glued, (size_t)elements * GLUED},
@@ -137,7 +139,7 @@ const char* heat_parse(Numbers* n, const char* text) {
       !numbered(n->curved, (size_t)fingers * partners * n->sides, n->tables) || n->sides < 3 ||
       !within(n->glued + ON, elements, GLUED, objects - 1) ||
       !within(glued_across, (size_t)fingers * elements, law, 2) || !within(glued_across + 1, (size_t)fingers * elements, law, 2) ||
-      !within(n->spread, (size_t)tips * n->targets * (1 + AXES), 1, n->spreads - 1) || !within(n->viewed, partners, 1, n->sides) || !within(n->along, 2 * PATTERNS, 1, FUNCTIONS - 1))
+      !within(n->spread, (size_t)tips * n->targets * (1 + 2 * AXES), 1, n->spreads - 1) || !within(n->viewed, partners, 1, n->sides) || !within(n->along, 2 * PATTERNS, 1, FUNCTIONS - 1))
     return "the attribute \"numbers\" names something that is not there";
   return NULL;
 }

@@ -19,11 +19,23 @@ from ...thermal.kernels import ALONG, GRAM, GRASP, JUMPS, NODES, OF_GRASP, TIMES
 from ...thermal.network import POLES, WEIGHTS
 from ...thermal.numerics import HIGH, LOW
 from ..contacts import BOND, GluedContacts, bends, curves, pair_laws
-from ..heat import TipField, Wall, crossing_rate, narrow_tables, resolution, tip_field, untouched, wall_of
+from ..heat import (
+    Pinched,
+    TipField,
+    Wall,
+    crossing_rate,
+    face_modes,
+    kinds_of,
+    narrow_tables,
+    resolution,
+    tip_field,
+    untouched,
+    wall_of,
+)
 from ..scene import BodyShape, PadPlace
 from .backs import back_rows
 
-_VERSION = 17
+_VERSION = 20
 
 
 def packed(
@@ -57,7 +69,7 @@ def packed(
     tables = found.all_tables
     across = [(pad, side) for pad in sensors for side in _across(shapes, sensors, pad.stack.width)]
     narrow, ripples, spread = narrow_tables(across, level, timestep * steps)
-    spread = spread.reshape(-1, 3, 2)
+    spread = spread.reshape(-1, 6, 2)
     glued_contacts = GluedContacts(pads, glued, len(shapes), 1)
     header = (
         *(_VERSION, len(sensors), len(shapes), len(owner), level.patterns, level.rates, most, steps),
@@ -69,6 +81,7 @@ def packed(
         roles,
         owner,
         *((*pad.position, *pad.axes.T.ravel(), *pad.half_sides, pad.stack.width) for pad in sensors),
+        kinds_of(sensors),
         *(_box(shape, film, ambient) for shape in shapes),
         _columns(laws),
         curved,
@@ -80,6 +93,7 @@ def packed(
         narrow,
         ripples,
         np.column_stack((spread[:, 0, 0], spread[..., 1])),
+        *(face_modes(pad, level) for pad in sensors),
         bends(pads),
         curves(model, pads, shapes),
         [
@@ -108,12 +122,14 @@ def packed(
 
 def _across(
     shapes: Sequence[BodyShape], sensors: Sequence[PadPlace], width: float
-) -> Iterator[Wall | PadPlace]:
-    """What a sensor of that width m touches across each of the three axes of every target."""
+) -> Iterator[Wall | Pinched | PadPlace]:
+    """What a sensor of that width m touches across each of the three axes of every target, and then where all of it is
+    pressed from behind."""
     for shape in shapes:
-        yield from (wall_of(shape.material, 1.0, side, width) for side in shape.size.tolist())
+        for by in (0.0, 1.0):
+            yield from (wall_of(shape.material, 1.0, side, width, by) for side in shape.size.tolist())
     for sensor in sensors:
-        yield from (sensor,) * 3
+        yield from (sensor,) * 6
 
 
 def _box(shape: BodyShape, film: float, ambient: float) -> tuple[float, ...]:

@@ -13,9 +13,8 @@
 #define EVENLY (5.0 / 6) /* of a line, the square of the mean pressure over the mean of its square */
 #define SHORT 1e-9    /* m, that a line which does not reach the other counts to touch */
 #define SLIGHT 1e-4   /* rad: a smaller arc is its tangent */
-#define FEW 1e-6      /* of what contact and gas conduct: less is no contact */
-#define SPOT_ON_SKIN 2.0
-#define SPREAD_STEPS 8 /* Newton's, to a strip's width */
+#define SPOT 2.0 /* of through_soft */
+#define EDGE 0.7
 /* Gauss's four places between 0 and 1, and their weights */
 #define WEDGE_NODES 0.06943184420297371, 0.33000947820757187, 0.6699905217924281, 0.9305681557970262
 #define WEDGE_WEIGHTS 0.17392742256872679, 0.3260725774312732, 0.3260725774312732, 0.17392742256872679
@@ -243,53 +242,23 @@ static double wedge_gas(const Wedge* wedge, double gap) {
   return total;
 }
 
-/* Of thermal/contact/spread.py: what a flow over an area meets more than one over the whole, from a strip `along` m long or from
-a disc, 0; and the area that meets so much more. */
-static double drawn_together(double area, double whole, const Law* below, double along) {
-  double narrower = 1 / area - 1 / whole, spread = below->series / 4 * (sqrt(pi / area) - sqrt(pi / whole));
-  if (along > 0) spread = -below->series / (pi * along) * log(sin(pi / 2 * area / whole));
-  return lesser(spread, below->straight * narrower) + below->sheet * narrower;
-}
-
-static double resisting(double resists, double area, double whole, const Law* below, double along) {
-  if (!(resists > 0)) return whole;
-  double sheet = below->sheet, straight = 1 / (1 / whole + resists / (below->straight + sheet)), spreads = area;
-  if (along > 0) {
-    double strength = below->series / (pi * along);
-    if (sheet > 0) spreads = greater(spreads, 1 / (1 / whole + resists / sheet));
-    for (int i = 0; i < SPREAD_STEPS; i++) {
-      double at = pi / 2 * spreads / whole;
-      double more = -strength * log(sin(at)) + sheet * (1 / spreads - 1 / whole) - resists;
-      if (more <= 0) break;
-      spreads *= exp(more / (strength * at / tan(at) + sheet / spreads));
-    }
-  } else {
-    double root = below->series * sqrt(pi) / 8, more = resists + sheet / whole + 2 * root / sqrt(whole);
-    spreads = (root + sqrt(root * root + sheet * more)) / more;
-    spreads *= spreads;
+/* Of thermal/contact/footprint.py: W/K of a contact between bodies that give way, with what its heat meets more than it would
+over the whole. */
+static double through_soft(double conducts, double around, double area, double length, double face, double whole, const Law* below) {
+  if (!(area > 0 && area < whole)) return conducts;
+  double spot = lesser(greater(SPOT * (1 - length / face), 0), 1), radius = sqrt(area / pi), wide = sqrt(whole / pi);
+  double spreads = below->series / 4 * (1 / radius - 1 / wide), rim = pi * radius, outer = pi * wide;
+  if (spot < 1) {
+    double along = lesser(length, face), strip = -below->series / (pi * along) * log(sin(pi / 2 * area / whole));
+    spreads = strip + spot * (spreads - strip);
+    rim = along + spot * (rim - along);
+    outer = along + spot * (outer - along);
   }
-  return greater(lesser(straight, spreads), area);
-}
-
-static double beside_one_another(double one, double other, double common) {
-  return (one * other - common * common) / (one + other - 2 * common);
-}
-
-static double flows_of_line(double contact, double gas, double area, double whole, const Law* below, double along) {
-  if (area <= 0 || area >= whole) return whole;
-  double both = (below->straight + below->sheet) / whole;
-  double narrow = 1 / contact + both + drawn_together(area, whole, below, along);
-  double resists = beside_one_another(narrow, 1 / gas + both, both) - 1 / (contact + gas) - both;
-  return resisting(resists, area, whole, below, along);
-}
-
-static double flows_of_spot(double contact, double gas, double area, double whole, const Law* below) {
-  if (area <= 0 || area >= whole) return whole;
-  double common = below->straight / whole, sheet = below->sheet / whole;
-  double narrow = 1 / contact + common + sheet + drawn_together(area, whole, below, 0);
-  double wide = 1 / gas + (below->straight + below->sheet) / (whole - area);
-  double resists = beside_one_another(narrow, wide, common) - 1 / (contact + gas) - common - sheet;
-  return resisting(resists, area, whole, below, 0);
+  double straight = below->deep * (1 / area - 1 / whole), edge = EDGE * below->thick;
+  double more = below->sheet * (1 / (area + edge * rim) - 1 / (whole + edge * outer));
+  if (spreads > 0) more += spreads * straight / sqrt(spreads * spreads + straight * straight);
+  double same = lesser(around * area / (whole - area), conducts);
+  return same + (conducts - same) / (1 + (conducts - same) * more);
 }
 
 void heat_beside_round(const Law* law, const Wedge* wedge, double* conducts, double* area, double* length) {
@@ -300,16 +269,12 @@ void heat_beside_round(const Law* law, const Wedge* wedge, double* conducts, dou
   double less = law->gas * wedge_gas(wedge, law->mean_gap + law->gas * resistance);
   double rest = greater((wedge->right - wedge->left) * (wedge->upper - wedge->lower) - *area, 0);
   double spread = around > less ? lesser(around * less * resistance / (around - less), rest) : rest;
-  double total = *conducts + around, longer = *area > 0 ? greater(*length * *length / *area, 1) : 1;
-  double gas = lesser(around + law->gas / law->mean_gap * *area, total), whole = *area + spread;
-  double patch = ((total - gas) * *area + gas * (*area + spread * around / gas)) / total;
-  if (*area > 0 && total - gas > FEW * total) {
-    double line = greater(1 - SPOT_ON_SKIN * (1 - lesser(*length / face, 1)), 0), flows = 0;
-    if (line > 0) flows = line * flows_of_line(total - gas, gas, *area, whole, law, lesser(*length, face));
-    if (line < 1) flows += (1 - line) * flows_of_spot(*conducts, around, *area, whole, law);
-    patch = greater(patch, flows);
+  double whole = *area + spread, longer = 1;
+  if (*area > 0) {
+    longer = greater(*length * *length / *area, 1);
+    *conducts = through_soft(*conducts, around, *area, *length, face, whole, law);
   }
-  *conducts = total;
-  *area = patch;
-  *length = greater(lesser(sqrt(patch * longer), face), patch / face);
+  *conducts += around;
+  *area = whole;
+  *length = greater(lesser(sqrt(whole * longer), face), whole / face);
 }

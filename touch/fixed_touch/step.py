@@ -152,19 +152,21 @@ class FixedTouch:
         )
         shares = found.shares.reshape((*pairs, 4))
         network, kind = self._numbers(material)
-        roots, behind, lag = self.narrow.behind(
-            state.narrow, kind, area, length, shares, array_ripple(closed, pulses)
-        )
         touching = conducts > 0
-        joined = xp.where(
-            touching, 1 / (1 / xp.where(touching, conducts, 1.0 + 0.0 * conducts) + lag), conducts
+        narrow = self.narrow.behind(
+            state.narrow, kind, touching, area, length, shares, array_ripple(closed, pulses)
         )
-        heat, heard = array_step(self.tables, network, state.heat, joined, self.difference - behind)
+        joined = xp.where(
+            touching, 1 / (1 / xp.where(touching, conducts, 1.0 + 0.0 * conducts) + narrow.series), conducts
+        )
+        heat, heard = array_step(
+            self.tables, network, state.heat, joined, self.difference - narrow.behind, narrow.mutual
+        )
         drop = heard.drop[:, :: len(self.objects)]
         signal, volts = measure_sample(self.chain, state.signal, drop, self.seebeck, self.dt, noise)
         voltage = xp.concatenate((state.voltage[..., 1:], volts[..., None]), -1)
         after = FixedTouchState(
-            heat, self.narrow.after(state.narrow, roots, heard.flow), signal, voltage, material, state.first
+            heat, self.narrow.after(state.narrow, narrow, heard.flow), signal, voltage, material, state.first
         )
         held = xp.stack([self.held[o][material[:, o]] for o in range(len(self.objects))], -1)
         most = found.force.argmax(-1)

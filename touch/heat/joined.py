@@ -11,6 +11,7 @@ W: worlds, F: fingertips, O: objects, T = O + F: targets of a contact (objects, 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from operator import is_
 from typing import Any
 
@@ -28,8 +29,15 @@ from .backs import HeatedBack, ThermostatBack
 from .contents import HeldContents
 from .fixed import FixedNetworks, FixedPlaces, JoinedWorld, world_networks, world_places
 from .march import TABLE, sample
-from .narrow import STEPS, wall_of
-from .narrow_pairs import NarrowPairs
+from .narrow import (
+    STEPS,
+    NarrowPairs,
+    face_modes,
+    face_room_size,
+    kinds_of,
+    pressed_behind,
+    wall_of,
+)
 from .places import (
     MOST_PLACES,
     NEAR,
@@ -71,6 +79,7 @@ class JoinedHeat:
     ) -> None:
         pads = (*fingertips, *glued)
         self._pads, self._shapes = pads, tuple(shapes)
+        self._pad_kinds = kinds_of(pads)
         self._glued = GluedContacts(fingertips, glued, len(shapes), worlds) if glued else None
         self._dt, self._ambient = dt, ambient
         self._level = resolution(tolerance, any(shape.solid is not None for shape in shapes))
@@ -121,6 +130,7 @@ class JoinedHeat:
         self._narrow = np.zeros((worlds, lanes, fields, self._level.rates))
         rings = [one for _, padded in around for one in padded.impedance.T.tolist()]
         self._pairs = NarrowPairs(pads, rings, self._widths, self._level, worlds, fields, dt)
+        self._modes = np.array([face_modes(pad, self._level) for pad in pads])
         self.drop = np.zeros((worlds, count))
         """(W, S) K over the sensed layers, mean over the face. It stays where it is."""
         self.warmth = np.zeros((worlds, objects))
@@ -140,6 +150,7 @@ class JoinedHeat:
         self._roots, self._leans = np.zeros((2, ports, self._level.rates))
         self._placed = np.zeros(4)
         self._touches, self._touches_at = np.zeros(0), 0
+        self._face_room = np.zeros(0)
         self._room, self._table = np.zeros(0), np.zeros(TABLE, np.int64)
         self._point()
         self._forget()
@@ -189,6 +200,8 @@ class JoinedHeat:
         """°C of the air and (S,) of ideal thermostats from now on; a reset of all worlds must follow."""
         self._ambient = ambient
         self._warm[:] = fingertips - ambient
+        now = zip(self._pads, fingertips.tolist(), strict=True)
+        self._pad_kinds = kinds_of([replace(pad, temperature=celsius) for pad, celsius in now])
 
     @property
     def systems(self) -> int:
@@ -260,6 +273,9 @@ class JoinedHeat:
             room = room_size(pool.most, self._level.patterns, pool.rates)
             if room != len(self._room):
                 self._room = np.zeros(room)
+            faces = face_room_size(pool.most, self._level.rates)
+            if faces != len(self._face_room):
+                self._face_room = np.zeros(faces)
             arrays = (
                 *(self._boxes, self._widths, self._reach, self._faces, self._middles),
                 *(self._sought_faces, self._sought_middles, self._new_faces, self._new_middles),
@@ -268,7 +284,8 @@ class JoinedHeat:
                 *(self._fade, self._held_by, self._rows, self._nets, self._decay, self._pairs.tables),
                 *(self._pairs.kinds, self._x, self._narrow, self._given, self._air, self.drop, self._busy),
                 *(self.warmth, self._seconds, self._roots, self._room, self._placed),
-                *(self._around_of, self._owners, self._shares, self._leans, self._pairs.ripples),
+                *(self._around_of, self._owners, self._shares, self._leans),
+                *(self._pairs.ripples, self._modes, self._face_room),
             )
             worlds, tips, objects = self._current.shape
             sizes = (
@@ -282,6 +299,7 @@ class JoinedHeat:
                     pool.most,
                     len(self._owners),
                     len(self._widths),
+                    len(self._face_room),
                 ),
             )
             self._outdated = False
@@ -341,6 +359,18 @@ class JoinedHeat:
             self._warm[w],
             self._narrow[w, :tips],
         )
+
+    def meeting_through(self) -> set[tuple[int, int, int]]:
+        """Two fingertips each and the object that they touch from opposite sides while they touch one another, in any
+        world."""
+        tips, objects = self._current.shape[1:]
+        meets = self._closed[:, :tips, objects:]
+        found = set()
+        for w, f, g in np.argwhere(meets).tolist():
+            for o in np.flatnonzero(self._closed[w, f, :objects] & self._closed[w, g, :objects]).tolist():
+                if self._faces[w, f, o] == self._faces[w, g, o] ^ 1:
+                    found.add((min(f, g), max(f, g), o))
+        return found
 
     @property
     def touched(self) -> bool:
@@ -519,8 +549,6 @@ class JoinedHeat:
         for w in range(len(self._fields)):
             self._renumber(w)
             self._pairs.know(w, self._materials[w])
-            for f, o in np.argwhere(self._current[w] >= 0).tolist():
-                self._spread(w, f, o)
         self._plan[:] = -1
         self._stale[:] = True
 
@@ -575,13 +603,18 @@ class JoinedHeat:
             return
         place = self._fields[w][o].places[number]
         self._faces[w, f, o], self._middles[w, f, o] = place.face, place.whole
-        self._spread(w, f, o)
 
     def _spread(self, w: int, f: int, o: int) -> None:
         """How a narrow contact's heat spreads in the object at the pair's place."""
-        field = self._fields[w][o]
-        at = int(self._current[w, f, o])
-        wall = wall_of(self._materials[w][o], *field.below[at], float(self._widths[f]))
+        field, current, width = self._fields[w][o], self._current[w, :, o].tolist(), float(self._widths[f])
+        at = int(current[f])
+        behind = [
+            field.places[number]
+            for g, number in enumerate(current)
+            if g != f and number >= 0 and self._closed[w, g, o] and self._pad_kinds[g] == self._pad_kinds[f]
+        ]
+        by = pressed_behind(field.places[at], behind, field.below[at][1], width)
+        wall = wall_of(self._materials[w][o], *field.below[at], width, by)
         self._pairs.spread(w, f, o, wall)
 
     def _join(self, w: int) -> None:
@@ -590,6 +623,8 @@ class JoinedHeat:
         if len(self._pool) > MOST_SYSTEMS + 2 * self._plan.size:
             self._forget()
         objects = len(self._shapes)
+        for f, o in np.argwhere(self._current[w] >= 0).tolist():
+            self._spread(w, f, o)
         pairs: list[Pair] = [(f, t) for f, t in np.argwhere(self._closed[w]).tolist()]
         self._plan[w] = -1
         owners = self._pool.owners

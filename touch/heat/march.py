@@ -25,13 +25,23 @@ from ..contacts import (
     PULSES,
 )
 from ..pointers import flags, floats, words
-from .narrow import STEPS, lean, spread
+from .narrow import (
+    MODES,
+    STEPS,
+    add_own,
+    compiled_ripple,
+    face_room,
+    lean,
+    note_place,
+    send_across,
+    share_faces,
+    spread,
+)
 from .places import ACROSS
-from .ripple import compiled_ripple
 from .step import CONTACTS, HEADER, PACE, room_of, step
 
 GRID = 0.125  # of the sensor's width: places stand on a grid, so that networks serve many touches
-TABLE = 60
+TABLE = 63
 """Of the table that `sample` takes: addresses of JoinedHeat's arrays and their sizes."""
 BOX = 19
 """Of a row that tells an object."""
@@ -124,7 +134,7 @@ def sample(entries_at, touches_at, substeps, settled):
     were. entries_at: the address of JoinedHeat's table; touches_at: that of touches (W, F, T, COLUMNS), sums over so
     many substeps. settled: 1 or 0. Returns how many contacts and worlds `settle` tells of."""
     entries = words(entries_at, TABLE)
-    worlds, tips, objects, contacts, lanes = entries[41], entries[42], entries[43], entries[58], entries[59]
+    worlds, tips, objects, contacts, lanes = entries[43], entries[44], entries[45], entries[60], entries[61]
     targets = tips + objects
     touches, widths = (
         floats(touches_at, (worlds, tips, targets, COLUMNS)),
@@ -148,28 +158,28 @@ def sample(entries_at, touches_at, substeps, settled):
         )
         if moved or stale:
             return moved + stale
-    states, rates = entries[51], entries[54]
+    states, rates = entries[53], entries[56]
     decays = floats(entries[22], (3, rates))
     _march(
         floats(entries[32], 1)[0],
         substeps,
-        entries[44],
+        entries[46],
         touches,
         floats(entries[11], (worlds, tips)),
-        words(entries[12], (worlds, entries[45])),
-        words(entries[13], entries[46]),
-        words(entries[14], entries[47]),
-        floats(entries[15], entries[48]),
-        floats(entries[16], entries[49]),
-        floats(entries[17], entries[55] * PACE),
-        floats(entries[18], (entries[50], states)),
+        words(entries[12], (worlds, entries[47])),
+        words(entries[13], entries[48]),
+        words(entries[14], entries[49]),
+        floats(entries[15], entries[50]),
+        floats(entries[16], entries[51]),
+        floats(entries[17], entries[57] * PACE),
+        floats(entries[18], (entries[52], states)),
         floats(entries[19], (worlds, objects)),
-        floats(entries[20], (tips, entries[52])),
+        floats(entries[20], (tips, entries[54])),
         words(entries[21], (worlds, targets)),
         decays[0],
         decays[1],
         decays[2],
-        floats(entries[23], (entries[53], 2, 2, STEPS, STEPS, rates)),
+        floats(entries[23], (entries[55], 2, 2, STEPS, STEPS, rates)),
         words(entries[24], (worlds, lanes, targets, 2)),
         widths,
         words(entries[37], contacts),
@@ -181,13 +191,15 @@ def sample(entries_at, touches_at, substeps, settled):
         floats(entries[29], (worlds, tips)),
         flags(entries[30], targets),
         floats(entries[31], (worlds, objects)),
-        floats(entries[33], (contacts * targets * entries[44], rates)),
-        floats(entries[34], entries[56]),
+        floats(entries[33], (contacts * targets * entries[46], rates)),
+        floats(entries[34], entries[58]),
         floats(entries[35], 4),
         floats(entries[38], (lanes - tips, STEPS, 2)),
-        floats(entries[39], (contacts * targets * entries[44], rates)),
-        floats(entries[40], entries[53]),
-        entries[57],
+        floats(entries[39], (contacts * targets * entries[46], rates)),
+        floats(entries[40], entries[55]),
+        floats(entries[41], (tips, MODES, MODES, rates)),
+        floats(entries[42], entries[62]),
+        entries[59],
     )
     return 0
 
@@ -196,7 +208,7 @@ def sample(entries_at, touches_at, substeps, settled):
 def _march(
     dt, substeps, patterns, touches, warm, plan, starts, integers, ports, grams, paces, fade, held, rows, nets,
     decay, kept, grown, tables, kinds, widths, owners, x, states, narrow, given, air, drop, busy, warmth, roots,
-    numbers, placed, shares, leans, ripples, most,
+    numbers, placed, shares, leans, ripples, modes, face_numbers, most,
 ):  # fmt: skip
     """One step of dt s of every world.
 
@@ -212,11 +224,13 @@ def _march(
     the rings of pads around sensors, each as a square of its area that is touched from one side to the other; owners
     (F + pads,) tells of contacts whose they are. Under a curved object they see what the face's narrow contact does
     there, by shares (F RINGS, J, 2) of ring_shares; leans (F T, R) is room. ripples: (N,) m2 K/W of sides that
-    heat passes in pulses (ripple.py). Within a step these states follow
-    the mean flow, which takes no heat from anywhere and leaves them passive: the power that a flow loses in a
-    resistance is least where it is even."""
+    heat passes in pulses (ripple.py). modes: (F, MODES, MODES, R) of sensors that several
+    contacts share, and face_numbers, room for these (shared.py). Within a step these states follow the mean flow, which
+    takes no heat from anywhere and leaves them passive: the power that a flow loses in a resistance is least where it
+    is even."""
     worlds, fields, objects = x.shape[0], x.shape[1], held.shape[1]
     tips, targets, rates = len(rows), narrow.shape[2], len(decay)
+    faces = face_room(face_numbers, most, rates)
     room = room_of(numbers, most, patterns)
     resistances, differences, flow = room.resistance, room.difference, room.flow
     for w in range(worlds):
@@ -235,9 +249,14 @@ def _march(
                 break
             start = starts[plan[w, c]]
             contacts, joined = integers[start + CONTACTS], start + HEADER
+            shared = False
             for i in range(contacts):
                 f, t = integers[joined + 2 * i], integers[joined + 2 * i + 1]
                 owner = owners[f]
+                sharing = f < tips and (
+                    (i > 0 and integers[joined + 2 * i - 2] == f)
+                    or (i + 1 < contacts and integers[joined + 2 * i + 2] == f)
+                )
                 touch = touches[w, owner, t]
                 differs = warm[w, owner] - (warm[w, t - objects] if t >= objects else 0.0)
                 lane, parts, column = f, 1, CONDUCTANCE
@@ -279,6 +298,13 @@ def _march(
                     if not spreads:
                         for k in range(rates):
                             root[k] = 0.0
+                    if sharing and p == 0:
+                        shared = True
+                        note_place(faces.places[i], area, length, placed[:2], widths[f])
+                        for k in range(rates):
+                            faces.own[i, k] = 0.0
+                        if spreads:
+                            add_own(first_side, widths[f], area, length, placed[:2], faces.own[i])
                     if f >= tips:
                         for k in range(rates):
                             leans[port, k] = 0.0
@@ -313,6 +339,11 @@ def _march(
                             resistance += root[k] * root[k] * (1 - mean) / decay[k]
                     resistances[port], differences[port] = resistance, differs - behind
                     lane, column = lane + 1, column + 3
+            if shared:
+                share_faces(
+                    *(integers[joined:], contacts, tips, patterns, dt, grown, decay),
+                    *(modes, widths, narrow[w], roots, faces, resistances, differences),
+                )
             air[w] += dt * step(
                 dt,
                 start,
@@ -326,6 +357,8 @@ def _march(
                 x.shape[2],
                 held[w],
                 room,
+                shared,
+                faces.mutual,
             )
             for i in range(contacts):
                 f, t = integers[joined + 2 * i], integers[joined + 2 * i + 1]
@@ -341,6 +374,8 @@ def _march(
                             narrow[w, lane + p, t, k] = (
                                 kept[k] * narrow[w, lane + p, t, k] + grown[k] * roots[port, k] * flow[port]
                             )
+            if shared:
+                send_across(integers[joined:], contacts, patterns, grown, narrow[w], faces, flow)
             for i in range(contacts):
                 f, t = integers[joined + 2 * i], integers[joined + 2 * i + 1]
                 if f < tips or not touches[w, owners[f], t, CURVED] > 0:

@@ -24,7 +24,7 @@ places in use and of their ports, that of the table that `sample` takes, and how
 def tell_drop(at, drop):
     """Fills drop (F,) K. at: the address of JoinedHeat.telling."""
     entries = words(words(at, _BOOKS)[5], TABLE)
-    found = floats(entries[29], entries[42])
+    found = floats(entries[29], entries[44])
     for f in range(len(found)):
         drop[f] = found[f]
 
@@ -34,9 +34,9 @@ def tell_books(at, given, elements, gained):
     """JoinedHeat.balance: fills given (F, O) J, elements (F,) J and gained (O,) J, and returns J to the air."""
     books = words(at, _BOOKS)
     entries = words(books[5], TABLE)
-    tips, objects, states, contacts = entries[42], entries[43], entries[51], entries[58]
+    tips, objects, states, contacts = entries[44], entries[45], entries[53], entries[60]
     x, held = floats(entries[25], (objects + tips, states)), floats(entries[19], objects)
-    flowed, owners = floats(entries[27], (entries[59], objects + tips)), words(entries[37], contacts)
+    flowed, owners = floats(entries[27], (entries[61], objects + tips)), words(entries[37], contacts)
     rows, started = floats(books[0], (tips, books[6])), floats(books[2], objects)
     for f in range(tips):
         heat = 0.0
@@ -45,7 +45,7 @@ def tell_books(at, given, elements, gained):
         elements[f] = heat
         for o in range(objects):
             given[f, o] = flowed[f, o]
-    for lane in range(tips, entries[59]):
+    for lane in range(tips, entries[61]):
         for o in range(objects):
             given[owners[tips + (lane - tips) // RINGS], o] += flowed[lane, o]
     for o in range(objects):
@@ -59,13 +59,13 @@ def tell_warmth(at, touches_at, ambient, sensors, under, means):
     address of the touches (F, O + F, COLUMNS) of the last step. ambient: °C."""
     books = words(at, _BOOKS)
     entries = words(books[5], TABLE)
-    tips, objects, states, rates, lanes = entries[42], entries[43], entries[51], entries[54], entries[59]
+    tips, objects, states, rates, lanes = entries[44], entries[45], entries[53], entries[56], entries[61]
     targets = objects + tips
     x, warmth = floats(entries[25], (targets, states)), floats(entries[31], objects)
     even, warm = floats(books[1], (tips, books[7])), floats(entries[11], tips)
     current, ports = words(books[3], (tips, objects)), floats(books[4], (tips, objects, states))
     touches, widths = floats(touches_at, (tips, targets, COLUMNS)), floats(entries[1], lanes)
-    tables = floats(entries[23], (entries[53], 2, 2, STEPS, STEPS, rates))
+    tables = floats(entries[23], (entries[55], 2, 2, STEPS, STEPS, rates))
     kinds, narrow = words(entries[24], (lanes, targets, 2)), floats(entries[26], (lanes, targets, rates))
     for o in range(objects):
         means[o] = ambient + warmth[o]
@@ -88,7 +88,8 @@ def tell_warmth(at, touches_at, ambient, sensors, under, means):
 @njit(cache=True, borrows=True, error_model="numpy")
 def narrow_falls(tip_side, other, width, touch, states):
     """K by which a narrow contact is colder on the mean than the whole of a sensor's face, and warmer than the object
-    under it. tip_side, other: of narrow_table. width: m. touch: (COLUMNS,). states: (K,) of the pair."""
+    under it, as if no other contact shared the face. tip_side, other: of narrow_table. width: m. touch: (COLUMNS,).
+    states: (K,) of the pair."""
     if not (touch[AREA] > 0.0 and touch[CONDUCTANCE] > 0.0):
         return 0.0, 0.0
     i, u, j, v = seen(width, touch[AREA] / touch[CLOSED], touch[LENGTH] / touch[AREA])

@@ -101,11 +101,12 @@ def room_of(numbers, contacts, patterns):
 
 
 @njit(cache=True, inner=True, borrows=True, error_model="numpy", forceinline=True)
-def step(dt, at, integers, ports, grams, paces, patterns, states, first, stride, held, room):
+def step(dt, at, integers, ports, grams, paces, patterns, states, first, stride, held, room, shared, mutual):
     """One step of dt s of a group, whose integers begin at `at`. states: flat, in place; from `first` on the
     world's fields, each `stride` behind the last. held: (O,) J
     of the mean's state, the first of an object. ports, grams: of all groups. paces: (R PACE,). room: with the
-    ports' resistances and differences; their mean flows are filled. Returns what the air takes of its objects, W."""
+    ports' resistances and differences; their mean flows are filled. shared: whether mutual counts: (C C,) K/W, above
+    the diagonal, what the flow of one contact does at another. Returns what the air takes of its objects, W."""
     contacts, fields = integers[at + CONTACTS], integers[at + FIELDS]
     objects, wide = len(held), LANES * ((patterns + LANES - 1) // LANES)
     columns, m = contacts * wide, contacts * patterns
@@ -139,6 +140,11 @@ def step(dt, at, integers, ports, grams, paces, patterns, states, first, stride,
                 put(matrix, n, grams, touched_gram + n)
             for q in range(LANES):
                 matrix[diagonal + q] += resists
+            if p == 0 and shared:
+                for other in range(c + 1, contacts):
+                    lane = diagonal + 2 * LANES * patterns * (other - c)
+                    for q in range(LANES):
+                        matrix[lane + q] += mutual[c * contacts + other] / dt
             for q in range(_PAIRS):
                 real, imag = 2 * LANES * a + q, 2 * LANES * a + LANES + q
                 solved[real] = -heard[q * columns + c * wide + p]

@@ -14,7 +14,15 @@ from thermograsp.envs.bodies import library_object
 from thermograsp.envs.plant.pair import pair_config
 from thermograsp.errors import InvalidValueError, UnknownKeywordError, UnknownNameError
 from thermograsp.thermal import LAPPED_ALUMINA, SKINS, Skin, Surface, material, sensor
-from thermograsp.thermal.contact import contact_conductance, face_joint, footprint, rigid_sphere
+from thermograsp.thermal.contact import (
+    Pad,
+    conduction,
+    contact_conductance,
+    face_joint,
+    footprint,
+    rigid_sphere,
+    round_footprint,
+)
 
 SILICONE = SKINS["filled_silicone"]
 ENDLESS = GraspTask(seconds=100.0)
@@ -73,9 +81,12 @@ def test_a_ball_meets_its_springs_its_surface_and_its_layer() -> None:
     assert truth["contact_area"][0, 0] == pytest.approx(expected, rel=0.01)
     face, load = footprint(body.law, force, np.zeros(3))
     steel = Surface.of(material("steel"))
-    assert truth["conductance"][0, 0] == pytest.approx(
-        float(contact_conductance(face_joint(SILICONE, steel), load / face)), rel=0.02
-    )
+    law = round_footprint(Pad(), SILICONE, steel, 0.02)
+    through = conduction(law, force, np.zeros(3))[1]
+    assert truth["conductance"][0, 0] * expected == pytest.approx(through, rel=0.02)
+    h = float(contact_conductance(face_joint(SILICONE, steel), load / face))
+    straight = face / (1 / h + SILICONE.resistance)  # what touches, with the skin beneath it alone
+    assert straight < through < 2 * straight
     imbalance, exchanged = truth["heat_imbalance"][0], truth["heat_exchanged"][0]
     assert exchanged > 0.1 and abs(imbalance) < 1e-9 * exchanged
 

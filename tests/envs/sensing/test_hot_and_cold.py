@@ -254,8 +254,15 @@ def test_too_hot_a_thermostat_puts_both_heaters_off_until_the_next_reset():
         ({"heat_capacity": np.inf, "conductance": 1.0, "power": 5.0}, "infinite heat_capacity"),
         ({"heat_capacity": 1.0, "conductance": 100.0}, "0.01 s"),
         ({"heat_capacity": 1.0, "conductance": 1.0, "latent_heat": -1.0}, "latent_heat"),
+        ({"heat_capacity": 10.0, "conductance": 1.0, "setpoint": 60.0}, "give its power"),
     ],
 )
 def test_reservoirs_that_cannot_be_are_refused(wrong, says):
     with pytest.raises(InvalidValueError, match=says):
         Reservoir(**wrong)
+
+
+@pytest.mark.parametrize("celsius", [-20.0, 101.0])
+def test_water_is_liquid(celsius: float) -> None:
+    with pytest.raises(InvalidValueError, match="0 to 100"):
+        water(0.1, 4.0, celsius)

@@ -16,6 +16,7 @@ from thermograsp.thermal.contact import (
     bare_footprint,
     beneath,
     beside_round,
+    conductance,
     conduction,
     even_patch,
     face_joint,
@@ -23,7 +24,6 @@ from thermograsp.thermal.contact import (
     footprint,
     round_footprint,
     skinned,
-    solid_conduction,
 )
 from thermograsp.thermal.matter import skin
 
@@ -126,13 +126,14 @@ def test_two_round_bodies_have_the_patch_of_the_one_that_they_are_beside_a_plane
     body, worn, half = material(name), skin("filled_silicone"), PAD.face / 2
     law, below = round_footprint(PAD, worn, Surface.of(body), 0.02, length), beneath(body, worn)
     pair = flat_law(skinned(PAD, worn), face_joint(worn, Surface.of(body)), (1.0, 1.0))
-    pair["mean_gap"], pair["straight"], pair["series"], pair["sheet"] = law["mean_gap"], *below
+    for key, value in {"mean_gap": law["mean_gap"], **below._asdict()}.items():
+        pair[key] = value
     area, load = footprint(law, force, np.zeros(3))
     square = area / np.pi if length is None else (area / (2 * PAD.face)) ** 2
     bend = 50.0 if length is None else 1e-6
     wedge = Wedge(square * 25.0, 0.0, bend, 50.0, -half, half, -half, half)
     side = np.sqrt(area) if length is None else PAD.face
-    alone = solid_conduction(law, area, load)
+    alone = conductance(law, load / area) * area
     conducts, patch, long = beside_round(pair, wedge, alone, area, side)
     assert conducts == pytest.approx(conduction(law, force, np.zeros(3))[1], rel=5e-3)
     assert patch == pytest.approx(even_patch(law, body, force, worn), rel=0.01)

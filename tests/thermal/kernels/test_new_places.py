@@ -36,7 +36,7 @@ from thermograsp.thermal.kernels.axis import (
     wave_numbers,
 )
 from thermograsp.thermal.kernels.element import element, element_samples, face_impedance
-from thermograsp.thermal.kernels.excited import Face, shown_box, shown_face
+from thermograsp.thermal.kernels.excited import Face, excited, excited_alone, shown_box, shown_element
 from thermograsp.thermal.kernels.patterns import EACH_FUNCTION, EVENNESS, basis_shares
 from thermograsp.thermal.kernels.samples import SHOWN
 from thermograsp.thermal.matter import Layer
@@ -169,12 +169,20 @@ def test_a_face_narrower_than_the_sensor_is_nearly_covered_on_the_sensor(side: f
         assert np.isfinite(tip_at(SEED, spot.alike(WIDTH), Resolution(12, 3)).side.ports).all()
 
 
+def test_what_a_tip_knows_beforehand_is_what_it_would_find() -> None:
+    made = tip(SEED, PART, Resolution(12, 3))
+    again = replace(made)
+    for name in ("weight", "shares", "jumps"):
+        np.testing.assert_allclose(getattr(made, name), getattr(again, name), rtol=1e-13, atol=1e-15)
+
+
 @pytest.mark.parametrize("spot", SPOTS[:3])
-def test_a_face_in_steps_is_its_box(spot: Spot) -> None:
+def test_a_face_excites_what_its_box_does(spot: Spot) -> None:
     """From kernels along its axes, beside the box's own at as few times."""
     centre, half = np.array([spot.contact.centre]), np.array([spot.contact.half])
     patches, made = Patches(np.array([5]), centre, half), (spot.conductivity, spot.heat_capacity)
-    found = shown_face(Face(spot.sides, spot.depth, spot.contact.centre, spot.contact.half), *made)
-    wanted = shown_box((*spot.sides, spot.depth), *made, patches)
-    own = np.sqrt(np.einsum("sii->si", wanted))
-    assert (np.abs(found - wanted) / (own[:, :, None] * own[:, None])).max() < 1e-7
+    across = shown_element(element(SEED), spot.contact.covered)
+    face = Face(spot.sides, spot.depth, spot.contact.centre, spot.contact.half)
+    found = excited_alone(face, *made, across, 3)
+    wanted = excited(shown_box((*spot.sides, spot.depth), *made, patches), across[None], patches.areas, 3)[0]
+    assert np.abs(EVENNESS.T @ (found - wanted)).max() < 1e-5  # of combinations of size 1

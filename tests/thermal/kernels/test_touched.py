@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 import pytest
 
@@ -18,7 +20,8 @@ from thermograsp.thermal.kernels import (
     under_tips,
 )
 from thermograsp.thermal.kernels import samples as samples_module
-from thermograsp.thermal.kernels import touched as touched_module
+from thermograsp.thermal.kernels.box import box_kernel
+from thermograsp.thermal.kernels.patterns import basis_terms
 
 SEED = sensor("seed")
 LEVEL = Resolution(12, 3, slowest=2e-3)
@@ -66,7 +69,6 @@ def test_few_times_of_a_kernel_tell_its_transform(monkeypatch, name):
     few, few_beside = impedances(name)
     samples_module.grasp_rule.cache_clear()
     monkeypatch.setattr(samples_module, "FEW_SPACING", 0.6)
-    monkeypatch.setattr(touched_module, "FEW_SPACING", 0.6)
     monkeypatch.setattr(samples_module, "_UNFELT", 1e-14)
     monkeypatch.setattr(samples_module, "_FIRST", 1e-9)
     many, many_beside = impedances(name)
@@ -79,20 +81,43 @@ def test_few_times_of_a_kernel_tell_its_transform(monkeypatch, name):
     assert (np.abs(transformed(few_beside) - transformed(many_beside)) / whole).max() < 1e-2
 
 
+class Told(NamedTuple):
+    """A kernel as box_kernel tells it, by a Rule."""
+
+    kernel: np.ndarray
+    rate: float
+    port: np.ndarray
+    heat: np.ndarray
+    rule: samples_module.Rule
+
+
+def told(box: TouchedBox, first: int) -> Told:
+    known, count = box.material, box.touched
+    capacity = known.volumetric_heat_capacity
+    rule = samples_module.grasp_rule(known.conductivity / capacity)
+    jumps = np.array([one.jumps for one in box.tips])
+    terms = basis_terms(LEVEL.patterns)
+    made = known.conductivity, capacity, box.film
+    kernel, rate, port, _, heat = box_kernel(SIZE, *made, box.patches, jumps, terms, count, rule.times, first)
+    assert heat is not None
+    return Told(kernel, rate, port, heat, rule)
+
+
 def impedances(name: str):
     """Of patches under fingertips, with the heat's; and the kernel of others."""
     box = touched(name, 15.0, 2)
-    under, areas = touched_module._kernel_of(box, 0), box.patches.areas
-    alone = 1 / (areas * box.material.volumetric_heat_capacity * np.sqrt(np.pi * under.begun))
+    under, areas = told(box, 0), box.patches.areas
+    alone = 1 / (areas * box.material.volumetric_heat_capacity * np.sqrt(np.pi * under.rule.begun))
     own = samples_module.at_moments(
-        under.kernel, under.heat, under.port, alone, np.eye(3), under.to_grasp, under.early
+        under.kernel, under.heat, under.port, alone, np.eye(3), under.rule.to_moments, under.rule.early
     )
-    return own, touched_module._kernel_of(touched(name, 15.0), 2)
+    return own, told(touched(name, 15.0), 2)
 
 
-def transformed(beside) -> np.ndarray:
+def transformed(beside: Told) -> np.ndarray:
     first = beside.kernel[0] + np.outer(beside.port[:6], beside.port[6:])
-    return np.tensordot(beside.to_grasp, beside.kernel, axes=1) + beside.early[:, None, None] * first
+    rule = beside.rule
+    return np.tensordot(rule.to_moments, beside.kernel, axes=1) + rule.early[:, None, None] * first
 
 
 @pytest.mark.parametrize("film", [5.0, 300.0])

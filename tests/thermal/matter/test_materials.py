@@ -381,3 +381,9 @@ def test_a_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
     (tmp_path / "binary.toml").write_bytes(b"\xff\xfe")
     with pytest.raises(InvalidValueError, match="binary.toml is not valid TOML"):
         load_materials(tmp_path / "binary.toml")
+
+
+@pytest.mark.parametrize("name", ["", None, 3])
+def test_a_material_needs_a_name(name: object) -> None:
+    with pytest.raises(InvalidValueError, match="needs a name"):
+        thermal.Material(name, 1.0, 2000.0, 800.0)  # pyright: ignore[reportArgumentType]

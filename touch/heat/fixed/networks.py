@@ -23,8 +23,9 @@ class FixedNetworks:
     rates (T, K) 1/s. ports (T, K, N M) sqrt(K/J). drop (N, K): what a pair's fingertip feels. difference (N,) K of the
     fingertips above the air. begin (O + 1,): where the states of the objects begin, the first ones those of their mean
     temperatures, and where the last object's end. held (O, V): J in one of the first ones.
-    narrow (U, 2, 2, J, J, S) K/J and ripples (U,) m2 K/W of narrow_tables, narrow_number (N V, 2) of those of each
-    pair's sides, its materials behind one another, width (N,) m and decay (S,) 1/s.
+    narrow (U, 2, 2, J, J, S) K/J and ripples (U,) m2 K/W of narrow_tables, narrow_number (N V, 3) of those of each
+    pair's sides, its materials behind one another, and of the object while pair number behind (N,) presses it from the
+    other side, width (N,) m, decay (S,) 1/s and modes (F, MODES, MODES, S) K/J of face_modes.
     state (K,) and narrow_state (N, S): as they are now."""
 
     dt: float
@@ -37,8 +38,10 @@ class FixedNetworks:
     narrow: np.ndarray
     ripples: np.ndarray
     narrow_number: np.ndarray
+    behind: np.ndarray
     width: np.ndarray
     decay: np.ndarray
+    modes: np.ndarray
     state: np.ndarray
     narrow_state: np.ndarray
 
@@ -53,13 +56,16 @@ def fixed_networks(
     narrow: np.ndarray,
     ripples: np.ndarray,
     narrow_number: np.ndarray,
+    behind: np.ndarray,
     width: np.ndarray,
     decay: np.ndarray,
+    modes: np.ndarray,
     states: Sequence[np.ndarray],
     narrow_state: np.ndarray,
 ) -> FixedNetworks:
     """fields: of the objects, by material. places: (F, O) each pair's among its object's. warm: (F,) K. narrow,
-    ripples: tables, and narrow_number, width: by pair. states: of the objects, then of the fingertips."""
+    ripples: tables, and narrow_number, behind, width: by pair. modes: by fingertip. states: of the objects, then of
+    the fingertips."""
     objects, most = len(fields), max(map(len, fields))
     lengths = [max(len(field.rates) for field in choices) for choices in fields] + [
         len(tip.side.rates) for tip in tips
@@ -96,8 +102,10 @@ def fixed_networks(
         narrow,
         ripples,
         narrow_number,
+        behind,
         width,
         decay,
+        modes,
         state,
         narrow_state,
     )

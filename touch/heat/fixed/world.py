@@ -18,7 +18,7 @@ from ....thermal.numerics import Array
 from ...contacts import COLUMNS, CONDUCTANCE, NORMAL, PLACE
 from ...scene import PadPlace
 from ..march import settle
-from ..narrow import narrow_tables, wall_of
+from ..narrow import face_modes, kinds_of, narrow_tables, pressed_behind, wall_of
 from ..places import BodyField, Place, carried_states
 from .networks import FixedNetworks, fixed_networks
 from .places import FixedPlaces, fixed_places
@@ -119,13 +119,24 @@ def world_networks(
     kinds = [[choices[min(v, len(choices) - 1)] for v in range(most) for _ in poses] for choices in materials]
     # as `after` has them, of which an object may have fewer
     fields = [[known[min(v, len(known) - 1)] for v in range(most * len(poses))] for known in after]
-    pairs = [
-        (pad, wall_of(one, *field.below[int(current[f, o])], pad.stack.width))
-        for f, pad in enumerate(world.pads)
-        for o, each in enumerate(kinds)
-        for one, field in zip(each, fields[o], strict=True)
-    ]
-    tables, ripples, number = narrow_tables(pairs, level, world.dt)
+    pairs, pinched, behind, pad_kinds = [], [], [], kinds_of(world.pads)
+    for f, pad in enumerate(world.pads):
+        width, others = pad.stack.width, [g for g in range(tips) if g != f and pad_kinds[g] == pad_kinds[f]]
+        for o, each in enumerate(kinds):
+            shares = np.zeros((len(each), tips))
+            for v, field in enumerate(fields[o]):
+                at = int(current[f, o])
+                for g in others:
+                    behind_it = [field.places[int(current[g, o])]]
+                    shares[v, g] = pressed_behind(field.places[at], behind_it, field.below[at][1], width)
+            other = int(shares.max(axis=0).argmax())
+            behind.append(other * objects + o)
+            for one, field, by in zip(each, fields[o], shares[:, other].tolist(), strict=True):
+                below = field.below[int(current[f, o])]
+                pairs.append((pad, wall_of(one, *below, width)))
+                pinched.append((pad, wall_of(one, *below, width, by)))
+    tables, ripples, number = narrow_tables([*pairs, *pinched], level, world.dt)
+    number = np.column_stack((number[: len(pairs)], number[len(pairs) :, 1]))
     return fixed_networks(
         world.dt,
         level.patterns,
@@ -136,8 +147,10 @@ def world_networks(
         tables,
         ripples,
         number,
+        np.array(behind),
         np.repeat(world.widths, objects),
         level.decay,
+        np.array([face_modes(pad, level) for pad in world.pads]),
         states,
         world.narrow[:, :objects].reshape(tips * objects, -1),
     )

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from thermograsp.compiled import njit
 
-from ...thermal.numerics import Array, namespace_of
+from ....thermal.numerics import Array, namespace_of
 
 
 def ripple(share, pulses):

@@ -9,14 +9,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...thermal import Material
-from ...thermal.kernels import Resolution
-from ..scene import PadPlace
-from .narrow import Beside, Side, Wall, narrow_sides, narrow_table, rippling, widths_of
+from ....thermal import Material
+from ....thermal.kernels import Resolution
+from ...scene import PadPlace
+from .tables import narrow_table, rippling
+from .walls import Beside, Pinched, Side, Wall, narrow_sides, widths_of
 
 
 class NarrowPairs:
-    """tables: of narrow.py, as many as there are and room for more, and ripples: m2 K/W of the same sides. kinds: (W,
+    """tables: of tables.py, as many as there are and room for more, and ripples: m2 K/W of the same sides. kinds: (W,
     L, T, 2) the numbers of those of both sides of a contact. rings: (L - F, moments) K/W of each. widths: (L,) m."""
 
     def __init__(
@@ -52,7 +53,7 @@ class NarrowPairs:
             # the object has a patch of what the ring covers
             self.kinds[w, lane, :, 1] = self._number((None, 0.0), width)
 
-    def spread(self, w: int, f: int, o: int, wall: Wall) -> None:
+    def spread(self, w: int, f: int, o: int, wall: Wall | Pinched) -> None:
         """What the object of a pair spreads heat as."""
         self.kinds[w, f, o, 1] = self._number(narrow_sides(self._pads[f], wall)[1], self._pads[f].stack.width)
 
