@@ -213,6 +213,32 @@ sys.exit(pytest.main(["-q", "-x", "-p", "no:cacheprovider", *{tests!r}]))
 
 
 @TIER
+def test_wider_registers_give_the_same_bits(tmp_path: Path) -> None:
+    """Beside a plugin that no function is compiled twice in."""
+    said = []
+    for name, options in (("wider", ()), ("plain", ("-DWIDER=",))):
+        code = f"""
+import mujoco
+from pathlib import Path
+from thermograsp.touch.engine import library
+from tests.touch.engine_scene import installed, order
+path = Path({str(tmp_path / f"{name}.so")!r})
+library.build(path, *{options!r})
+library.library = lambda: path
+model = installed()
+data = mujoco.MjData(model)
+for force, x in ((8.0, 0.0), (-2.0, 0.02), (5.0, 0.0)):
+    order(data, force, x, 0.0)
+    mujoco.mj_step(model, data, 300)
+print(data.plugin_state.tobytes().hex())
+"""
+        command, folder = [sys.executable, "-c", code], Path(__file__).parents[2]
+        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=True)
+        said.append(done.stdout)
+    assert said[0] == said[1] and np.any(np.frombuffer(bytes.fromhex(said[0].strip())))
+
+
+@TIER
 def test_a_million_random_steps(model: mujoco.MjModel) -> None:
     rng, data = np.random.default_rng(7), mujoco.MjData(model)
     for n in range(2_000):

@@ -108,11 +108,10 @@ typedef struct {
   size_t length; /* of all */
 } Numbers;
 
-/* Complex numbers at all poles, two at once; behind the poles is one that weighs nothing. */
-enum { HALVES = (POLES + 1) / 2 };
-typedef double Two __attribute__((vector_size(2 * sizeof(double))));
+/* Complex numbers at all poles at once; behind the poles is one that weighs nothing. */
+typedef double Four __attribute__((vector_size(4 * sizeof(double)), aligned(2 * sizeof(double))));
 typedef struct {
-  Two real[HALVES], imag[HALVES];
+  Four real, imag;
 } Complex;
 
 /* A field: the network of an object's places, or a fingertip's; x' = -rates x + ports q. ports: of each pattern of each

@@ -10,6 +10,17 @@ distinct by the zeros between them. */
 
 #define MOST 1e100 /* K/W, of a contact */
 
+/* Of a function that is compiled for processors with wider registers too. None of these fuses or changes the order of
+sums, so that all give the same bits. */
+#if !defined(WIDER) && defined(__x86_64__) && defined(__gnu_linux__) && defined(__has_attribute)
+#if __has_attribute(target_clones)
+#define WIDER __attribute__((target_clones("avx2", "default")))
+#endif
+#endif
+#ifndef WIDER
+#define WIDER
+#endif
+
 /* What a closed contact sees of its target or of its fingertip: a port for each of its patterns, `sign` of it. */
 typedef struct {
   int field, place, n, stride;
@@ -31,50 +42,45 @@ static Side side_of(const Numbers* numbers, const Work* work, const State* state
   return (Side){t, place, network->n, network->stride, sign, ports, network->scale, field(numbers, state, t)};
 }
 
-static const Complex one = {.real = {{1, 1}, {1, 1}}};
+static const Complex one = {.real = {1, 1, 1, 1}};
 
 /* From real and imaginary parts in turn, of every pole. */
-static Complex at_poles(const double parts[2 * POLES], double behind) {
-  return (Complex){{{parts[0], parts[2]}, {parts[4], behind}}, {{parts[1], parts[3]}, {parts[5], 0}}};
+static inline Complex at_poles(const double parts[2 * POLES], double behind) {
+  return (Complex){{parts[0], parts[2], parts[4], behind}, {parts[1], parts[3], parts[5], 0}};
 }
 
-static inline double sum(const Two a[HALVES]) {
-  Two both = a[0] + a[1];
-  return both[0] + both[1];
-}
+static inline double sum(const Four* a) { return ((*a)[0] + (*a)[2]) + ((*a)[1] + (*a)[3]); }
 
 static inline Complex times(Complex a, Complex b) {
-  Complex out;
-  for (int h = 0; h < HALVES; h++) {
-    out.real[h] = a.real[h] * b.real[h] - a.imag[h] * b.imag[h];
-    out.imag[h] = a.real[h] * b.imag[h] + a.imag[h] * b.real[h];
-  }
-  return out;
+  return (Complex){a.real * b.real - a.imag * b.imag, a.real * b.imag + a.imag * b.real};
+}
+
+/* The sum of the real parts of a b. */
+static inline double real_sum(Complex a, Complex b) {
+  Four part = a.real * b.real - a.imag * b.imag;
+  return sum(&part);
 }
 
 /* a + factor b */
 static inline Complex plus(Complex a, double factor, Complex b) {
-  for (int h = 0; h < HALVES; h++) {
-    a.real[h] += factor * b.real[h];
-    a.imag[h] += factor * b.imag[h];
-  }
-  return a;
+  return (Complex){a.real + factor * b.real, a.imag + factor * b.imag};
 }
 
 static inline Complex inverse_of(Complex a) {
-  for (int h = 0; h < HALVES; h++) {
-    Two part = 1.0 / (a.real[h] * a.real[h] + a.imag[h] * a.imag[h]);
-    a.real[h] *= part;
-    a.imag[h] *= -part;
-  }
-  return a;
+  Four part = 1.0 / (a.real * a.real + a.imag * a.imag);
+  return (Complex){a.real * part, -a.imag * part};
 }
 
 /* The temperature at a port of n states. */
 static inline Complex seen_at(int n, const double* port, const double* x, const Complex* scale) {
-  Complex all = {0};
-  for (int k = 0; k < n; k++) all = plus(all, port[k] * x[k], scale[k]);
-  return all;
+  Complex all = {0}, others = {0}; /* two sums, neither of which waits for the other */
+  int k = 0;
+  for (; k + 1 < n; k += 2) {
+    all = plus(all, port[k] * x[k], scale[k]);
+    others = plus(others, port[k + 1] * x[k + 1], scale[k + 1]);
+  }
+  if (k < n) all = plus(all, port[k] * x[k], scale[k]);
+  return plus(all, 1, others);
 }
 
 /* How the ports of a network hear one another where something may touch: of an object, whose places stand in the
@@ -96,7 +102,7 @@ void heat_pace(const Numbers* numbers, Network* network, bool tip) {
   for (int i = 0; i < network->n; i++) {
     double rate = numbers->dt * network->rates[i];
     network->scale[i] = inverse_of(plus(poles, rate, one));
-    network->kept[i] = 1 + 2 * rate * sum(times(weights, network->scale[i]).real);
+    network->kept[i] = 1 + 2 * rate * real_sum(weights, network->scale[i]);
     network->fade[i] = exp(-rate);
   }
   hear(numbers, network, tip);
@@ -112,7 +118,7 @@ static bool has_room(Work* work, size_t m) {
 }
 
 /* dt times how the closed contacts' ports hear one another, the lower half of (m, m). */
-static void join(const Numbers* numbers, const Work* work, const Side* sides, int pairs) {
+WIDER static void join(const Numbers* numbers, const Work* work, const Side* sides, int pairs) {
   int patterns = numbers->patterns, m = pairs * patterns;
   memset(work->matrix, 0, sizeof(Complex) * m * m);
   for (int one = 0; one < 2 * pairs; one++) {
@@ -140,7 +146,7 @@ static bool zero(const Complex* a) {
 
 /* Solves a symmetric matrix (m, m) at every pole, of which the lower half counts and is lost; no pivots, as they are never
 small (thermal/batch/step.py). */
-static void solve(int m, Complex* matrix, Complex* x) {
+WIDER static void solve(int m, Complex* matrix, Complex* x) {
   for (int c = 0; c < m; c++) {
     matrix[c * m + c] = inverse_of(matrix[c * m + c]);
     for (int r = c + 1; r < m; r++) {
@@ -158,7 +164,7 @@ static void solve(int m, Complex* matrix, Complex* x) {
 
 /* A step of every field; of each closed contact its sides, resistance K/W and difference K. mutual: (pairs, SHARED)
 K/W of each with those that share its face and stand before it, of which order and members tell. through: its mean flow W. */
-static void step(const Numbers* numbers, const Work* work, const State* state, int pairs, const Side* sides, const double* resistance,
+WIDER static void step(const Numbers* numbers, const Work* work, const State* state, int pairs, const Side* sides, const double* resistance,
                  const double* difference, const int* order, const int* members, const double* mutual, double* through) {
   int patterns = numbers->patterns, m = pairs * patterns;
   Complex *matrix = work->matrix, *flow = matrix + (size_t)m * m, poles = at_poles(numbers->poles, 1);
@@ -180,7 +186,7 @@ static void step(const Numbers* numbers, const Work* work, const State* state, i
   Complex weights = plus((Complex){0}, 2 * numbers->dt, at_poles(numbers->weights, 0));
   for (int j = 0; j < m; j++) {
     flow[j] = times(weights, flow[j]);
-    if (j % patterns == 0) through[j / patterns] = -sum(times(flow[j], inverse_of(poles)).real) / numbers->dt;
+    if (j % patterns == 0) through[j / patterns] = -real_sum(flow[j], inverse_of(poles)) / numbers->dt;
   }
   for (int t = 0; t < numbers->targets; t++) {
     const Network* network = work->networks + t;
@@ -189,11 +195,13 @@ static void step(const Numbers* numbers, const Work* work, const State* state, i
       if (sides[i].field == t) left = network->kept;
     for (int k = 0; k < network->n; k++) x[k] *= left[k];
   }
-  for (int j = 0; j < m; j++) {
-    for (const Side* side = sides + j / patterns * 2; side < sides + j / patterns * 2 + 2; side++) {
-      const double* port = side->ports + j % patterns * side->stride;
-      Complex given = plus((Complex){0}, side->sign, flow[j]);
-      for (int k = 0; k < side->n; k++) side->x[k] -= port[k] * sum(times(given, side->scale[k]).real);
+  for (int i = 0; i < 2 * pairs; i++) {
+    const Side* side = sides + i;
+    const Complex* given = flow + i / 2 * patterns;
+    for (int k = 0; k < side->n; k++) {
+      Complex all = {0};
+      for (int p = 0; p < patterns; p++) all = plus(all, side->ports[p * side->stride + k], given[p]);
+      side->x[k] -= side->sign * real_sum(all, side->scale[k]);
     }
   }
 }
