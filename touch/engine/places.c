@@ -1,7 +1,6 @@
 /* Places of objects, as touch/heat/places, joined.py and the first half of march.py: where a pad is on an object's box,
 which places are remembered, and how an object's field survives a change of them. */
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -9,7 +8,7 @@ which places are remembered, and how an object's field survives a change of them
 
 #define NEAR 0.187501 /* of the sensor's width: a pad that is as near to a known place is on it */
 #define GRID 0.125    /* of the sensor's width, on which places stand */
-#define LEAST 0.03    /* singular values below that share of the largest are left out */
+#define HARDLY 0.045  /* of what is seen best, by temperature: a flow that is seen so little counts half */
 #define GROWTH 1.1    /* times what a field's states are, the root of what they store: a new network has no more */
 #define TIE 1e-6      /* round-off does not decide where a pad is in the middle, between faces or points of the grid */
 #define ANOTHER 0.1   /* by which another face of the box must look more at the pad than the one in use */
@@ -85,7 +84,7 @@ bool heat_valid(const Numbers* numbers, const State* state) {
 
 size_t heat_carry_room(const Numbers* numbers) {
   size_t wide = 2 * (size_t)numbers->tips * numbers->patterns + IDLE, patterns = numbers->patterns;
-  size_t forgets = 3 * wide * wide + 2 * patterns * patterns + 2 * wide, carries = numbers->states + wide + 2 * wide * wide;
+  size_t forgets = 3 * wide * wide + 2 * patterns * patterns + 2 * wide, carries = numbers->states + 3 * wide + 4 * wide * wide;
   return carries > forgets ? carries : forgets;
 }
 
@@ -96,53 +95,19 @@ static int next_rate(const Network* network, int first) {
   return i;
 }
 
-/* The states x of one rate by which some ports see what they saw, `wanted`: nearest to it and else the smallest, by the
-singular values of what is seen, found by one-sided rotations of its columns (Hestenes). seen: of each state its row of
-that, and behind it how it is turned. */
-static void nearest(int columns, int rows, const double* wanted, double* seen, double* x) {
-  int stride = rows + columns;
-  double largest = 0;
-  for (int i = 0; i < columns * columns; i++) seen[(size_t)(i / columns) * stride + rows + i % columns] = i % (columns + 1) == 0;
-  for (int sweep = 0; sweep < 30; sweep++) {
-    bool turned = false;
-    for (int p = 0; p < columns - 1; p++) {
-      for (int q = p + 1; q < columns; q++) {
-        double *restrict left = seen + (size_t)p * stride, *restrict right = seen + (size_t)q * stride;
-        double a = 0, b = 0, c = 0;
-        for (int r = 0; r < rows; r++) {
-          a += left[r] * left[r];
-          b += right[r] * right[r];
-          c += left[r] * right[r];
-        }
-        largest = greater(largest, greater(a, b));
-        if (fabs(c) <= 1e-14 * sqrt(a * b) || greater(a, b) < 1e-4 * LEAST * LEAST * largest) continue;
-        turned = true;
-        double ratio = (b - a) / (2 * c), tangent = copysign(1 / (fabs(ratio) + sqrt(ratio * ratio + 1)), ratio);
-        double cosine = 1 / sqrt(tangent * tangent + 1), sine = tangent * cosine;
-        for (int r = 0; r < stride; r++) {
-          double one = left[r];
-          left[r] = cosine * one - sine * right[r];
-          right[r] = sine * one + cosine * right[r];
-        }
-      }
-    }
-    if (!turned) break;
-  }
-  largest = 0;
-  for (int pass = 0; pass < 2; pass++) {
-    for (int p = 0; p < columns; p++) {
-      const double* column = seen + (size_t)p * stride;
-      double size = 0, along = 0;
-      for (int r = 0; r < rows; r++) {
-        size += column[r] * column[r];
-        along += column[r] * wanted[r];
-      }
-      double left = size - LEAST * LEAST * largest;
-      if (pass == 0) largest = greater(largest, size);
-      else if (left > 0)
-        for (int i = 0; i < columns; i++) x[i] += column[rows + i] * along * left / (size * size);
-    }
-  }
+/* The states x of one rate by which some ports see what they saw, `wanted`: touch/heat/places/carry.py. seen: what each of
+them sees of the states. room: 3 rows^2 + 2 rows. */
+static void nearest(int columns, int rows, const double* wanted, const double* seen, double* x, double* room) {
+  double *gram = room, *square = gram + rows * rows, *inverse = square + rows * rows, *mixed = inverse + rows * rows, trace = 0;
+  mju_mulMatMatT(gram, seen, seen, rows, columns, rows);
+  mju_mulMatMat(square, gram, gram, rows, rows, rows);
+  for (int r = 0; r < rows; r++) trace += square[r * rows + r];
+  if (!(trace > 0)) return;
+  for (int r = 0; r < rows; r++) square[r * rows + r] += pow(HARDLY, 4) * trace;
+  heat_inverse(rows, square, inverse);
+  mju_mulMatVec(mixed, gram, wanted, rows, rows);
+  mju_mulMatVec(mixed + rows, inverse, mixed, rows, rows);
+  mju_mulMatTVec(x, seen, mixed + rows, rows, columns);
 }
 
 /* The field x on the states of a network with other places: of each rate those by which the common places see what they saw.
@@ -174,10 +139,9 @@ void heat_carry(const Numbers* numbers, const Network* before, const Network* af
     for (int r = 0; r < rows; r++) {
       wanted[r] = 0;
       for (int i = begun; i < ended; i++) wanted[r] += before->ports[(size_t)from[r] * numbers->states + i] * was[i];
-      for (int i = 0; i < columns; i++)
-        seen[(size_t)i * (rows + columns) + r] = after->ports[(size_t)to[r] * numbers->states + first + i];
+      memcpy(seen + (size_t)r * columns, after->ports + (size_t)to[r] * numbers->states + first, sizeof(double) * columns);
     }
-    nearest(columns, rows, wanted, seen, x + first);
+    nearest(columns, rows, wanted, seen, x + first, seen + (size_t)rows * columns);
   }
   for (int i = 1; i < after->n; i++) now += x[i] * x[i];
   double most = GROWTH * sqrt(stored), size = sqrt(now);

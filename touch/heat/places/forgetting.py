@@ -10,6 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from .bodies import BodyField
+from .by_rate import by_rate
 
 MOST_PLACES = 12
 """Of an object that are remembered besides those in use."""
@@ -31,12 +32,8 @@ def forgotten(
         return []
     ports = [n * patterns + m for n, whole in enumerate(field.whole) for m in range(patterns if whole else 1)]
     owner = np.array(ports) // patterns
-    rates = np.unique(field.rates[field.modal :])
-    gram, hears = np.zeros((len(rates), len(ports), len(ports))), np.zeros((len(rates), len(ports), 1))
-    for k, rate in enumerate(rates):
-        of_rate = field.modal + np.flatnonzero(field.rates[field.modal :] == rate)
-        seen = field.ports[of_rate][:, ports]
-        gram[k], hears[k, :, 0] = seen.T @ seen, seen.T @ states[of_rate]
+    rates, _, seen = known = by_rate(field, field.ports[:, ports])
+    gram, hears = seen @ seen.swapaxes(1, 2), np.einsum("kpc,kc->kp", seen, known.of(states))
     diagonal = np.arange(len(ports))
     ridge = _RIDGE * np.trace(gram, axis1=1, axis2=2) / len(ports)
     gram[:, diagonal, diagonal] += ridge[:, None]
@@ -44,11 +41,16 @@ def forgotten(
     while len(gone) < count:
         alive = np.flatnonzero(~np.isin(owner, gone))
         inverse = np.linalg.inv(gram[:, alive[:, None], alive])
-        flows, lost = inverse @ hears[:, alive], {}
+        flows = np.einsum("kij,kj->ki", inverse, hears[:, alive])
+        # of a place of one port
+        by_port = left @ (flows**2 / inverse[:, diagonal[: len(alive)], diagonal[: len(alive)]])
+        lost = {}
         for n in (n for n in idle if n not in gone):
             members = np.flatnonzero(owner[alive] == n)
-            block = np.linalg.solve(inverse[:, members[:, None], members], flows[:, members])
-            lost[n] = float(left @ (flows[:, members] * block).sum(axis=(1, 2)))
+            lost[n] = float(by_port[members[0]])
+            if len(members) > 1:
+                block = np.linalg.solve(inverse[:, members[:, None], members], flows[:, members, None])
+                lost[n] = float(left @ (flows[:, members] * block[..., 0]).sum(axis=1))
         least = min(lost.values()) * (1 + _ALIKE)
         gone.append(next(n for n, each in lost.items() if each <= least))
     return gone
