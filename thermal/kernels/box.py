@@ -50,6 +50,9 @@ class Patches(NamedTuple):
         return 4 * self.half[:, 0] * self.half[:, 1]
 
 
+_STEP = np.array([[-1.0, 1.0]])  # how an even function jumps, at its ends
+
+
 class BoxSamples(NamedTuple):
     """impedance: (S, N P, N P) K/W between patterns of unit heat flow, less the slowest eigenfunction's part, and slope
     of it by the moment. rate: 1/s of that and port: (N P,) sqrt(K/J) of it at each pattern; held: sqrt(J K) of heat in
@@ -74,9 +77,11 @@ def box_samples(
     film: float,
     patches: Patches,
     bases: Sequence[np.ndarray] | None = None,
+    even: Sequence[bool] | np.ndarray | None = None,
 ) -> BoxSamples:
     """size: m. conductivity: W/(m K). heat_capacity: J/(m3 K). film: W/(m2 K), 0 for adiabatic faces. bases: (P, M) of
-    each patch, the orthonormal combinations of patterns to tell instead of all P, the even pattern first.
+    each patch, the orthonormal combinations of patterns to tell instead of all P, the even pattern first. even: (N,) of
+    which patches that one alone is told, as one port.
 
     The film covers the patches too: what lies under a fingertip loses no heat to the air, see `shielded`."""
     if bases is None:
@@ -86,16 +91,21 @@ def box_samples(
         gram = np.eye(bases[0].shape[1])
         jumps, terms = along_axes(bases)
     known = box_kernel(
-        size, conductivity, heat_capacity, film, patches, jumps, terms, len(patches.face), TIMES
+        *(size, conductivity, heat_capacity, film, patches),
+        *(jumps, terms, len(patches.face), TIMES),
+        even=even,
     )
     kernel, rate, port, held, whole = known
     diffusivity = conductivity / heat_capacity
     impedance = np.tensordot(TO_MOMENTS, kernel, axes=1)
     slope = np.tensordot(TO_SLOPES, kernel, axes=1)
     early = before(diffusivity) / heat_capacity
-    for n, area in enumerate(patches.areas):
-        block = slice(n * len(gram), (n + 1) * len(gram))
-        impedance[:, block, block] += early / area * gram
+    first = 0
+    for n, area in enumerate(patches.areas.tolist()):
+        told = 1 if even is not None and even[n] else len(gram)
+        block = slice(first, first + told)
+        impedance[:, block, block] += early / area * gram[:told, :told]
+        first += told
     if whole is None:
         return BoxSamples(impedance, slope, rate, port, held, None)
     return BoxSamples(impedance, slope, rate, port, held, TO_MOMENTS @ whole)
@@ -113,17 +123,21 @@ def box_kernel(
     times: np.ndarray,
     first: int = 0,
     free: np.ndarray | None = None,
+    even: Sequence[bool] | np.ndarray | None = None,
 ) -> tuple[np.ndarray, float, np.ndarray, float, np.ndarray | None]:
     """Kernel (T, wanted P, L P) K/J at times (T,) s, ascending, of the temperatures of the first `wanted` patches by
     the L from number `first` on, less the slowest eigenfunction's part; rate, port and held as in BoxSamples; kernel
     (T, L P) of the heat in the box, likewise without it, None where no film takes any. jumps, terms: along_axes's.
     first: 0, or wanted where these are known. free: free_kernels's of these patches
-    at the times up to SWITCH, or more, where they are known."""
-    diffusivity = conductivity / heat_capacity
+    at the times up to SWITCH, or more, where they are known. even: (N,) patches of which the first pattern alone is
+    told, which is even; None for none of them."""
+    diffusivity, alone = conductivity / heat_capacity, np.zeros(len(patches.face), bool)
+    if even is not None:
+        alone[:] = even
     if free is None:
         taus = diffusivity * times
         early = taus[taus <= SWITCH * max(size) ** 2]
-        free = free_kernels(patches.half[: 0 if first else None], jumps, NODES, early)
+        free = _free(patches.half[: 0 if first else None], jumps, alone, early)
     kernel, slowest, port, held, whole = _kernel(
         np.asarray(size, float),
         film / conductivity,
@@ -132,6 +146,7 @@ def box_kernel(
         np.asarray(patches.face),
         patches.centre,
         patches.half,
+        alone,
         NODES,
         jumps,
         free,
@@ -142,6 +157,28 @@ def box_kernel(
     return kernel, float(slowest * diffusivity), port, float(held), whole if film > 0 else None
 
 
+def _free(half: np.ndarray, jumps: np.ndarray, even: np.ndarray, taus: np.ndarray) -> np.ndarray:
+    """free_kernels of patches of which few differ, in half widths (N, 2) m and jumps. even: (N,), those whose first
+    function is told."""
+    found = np.zeros((len(half), 2, jumps.shape[2], jumps.shape[2], len(taus)))
+    for alone in (False, True):
+        same: dict[bytes, list[int]] = {}
+        for n in np.flatnonzero(even[: len(half)] == alone).tolist():
+            same.setdefault(half[n].tobytes() + (b"" if alone else jumps[n].tobytes()), []).append(n)
+        firsts = [numbers[0] for numbers in same.values()]
+        if not firsts:
+            continue
+        told = free_kernels(
+            half[firsts],
+            np.tile(_STEP, (len(firsts), 2, 1, 1)) if alone else jumps[firsts],
+            NODES[[0, -1]] if alone else NODES,
+            taus,
+        )
+        for numbers, each in zip(same.values(), told, strict=True):
+            found[numbers, :, : each.shape[1], : each.shape[2]] = each
+    return found
+
+
 @njit(cache=True, error_model="numpy")
 def _kernel(*told):
     return compiled_kernel(*told)
@@ -149,14 +186,19 @@ def _kernel(*told):
 
 @njit(cache=True, inner=True, error_model="numpy")
 def compiled_kernel(
-    size, film, heat_capacity, taus, face, centre, half, nodes, jumps, free, terms, wanted, start
+    size, film, heat_capacity, taus, face, centre, half, even, nodes, jumps, free, terms, wanted, start
 ):
     """What box_kernel tells, but of the slowest eigenfunction its squared wave number 1/m2, and kernel (T, L P) of the
-    heat in the box whatever the film. film: 1/m, see wave_numbers. taus: (T,) m2, diffusivity times times. jumps:
-    (N, 2, F, E) of the functions along a patch's axes. terms: (P, X, 2), a pattern is the sum of X products of one
-    function along either axis, -1 for none."""
+    heat in the box whatever the film. film: 1/m, see wave_numbers. taus: (T,) m2, diffusivity times times. even: (N,)
+    bool, patches of one port. jumps: (N, 2, F, E) of the functions along a patch's axes, of which the first is even.
+    terms: (P, X, 2), a pattern is the sum of X products of one function along either axis, -1 for none."""
     count, functions, patterns = len(face), jumps.shape[2], len(terms)
-    total = count * patterns
+    # an even function jumps at the ends alone
+    functions_of, ports = np.empty(count, np.int64), np.zeros(count + 1, np.int64)
+    for n in range(count):
+        functions_of[n] = 1 if even[n] else functions
+        ports[n + 1] = ports[n] + (1 if even[n] else patterns)
+    total = ports[count]
     slowest, held = 0.0, 1.0
     places = np.empty((count, len(nodes)))
     ends, step, inside = np.empty(2), np.array([[-1.0, 1.0]]), np.empty((1, MODES))
@@ -208,33 +250,35 @@ def compiled_kernel(
                 continue
             w = axis if axis < facing else axis - 1
             which[axis, n] = w
-            for k in range(len(nodes)):
+            if even[n]:
+                places[n, 0] = centre[n, w] + half[n, w] * nodes[0]
+                places[n, 1] = centre[n, w] + half[n, w] * nodes[-1]
+            for k in range(0 if even[n] else len(nodes)):
                 places[n, k] = centre[n, w] + half[n, w] * nodes[k]
             for m in range(start if n >= start else 0, n):
-                if order[m] == 1 and alike[n] == n:
+                if order[m] == 1 and even[m] == even[n] and alike[n] == n:
                     same = True
-                    for k in range(len(nodes)):
+                    for k in range(2 if even[n] else len(nodes)):
                         same &= places[n, k] == places[m, k]
-                        for f in range(functions):
+                        for f in range(0 if even[n] else functions):
                             same &= jumps[n, w, f, k] == jumps[m, which[axis, m], f, k]
                     if same:
                         alike[n] = m
             evenly[n] = alike[n]
             if alike[n] == n:
-                overlaps(places[n], jumps[n, w], 1, length, waves, room, overlap[axis, n])
+                a, by = _along(places[n], jumps[n, w], True, even[n], step, point)
+                overlaps(a, by, 1, length, waves, room, overlap[axis, n])
                 continue
-            for f in range(functions):
+            for f in range(functions_of[n]):
                 for m in range(seen):
                     overlap[axis, n, f, m] = overlap[axis, alike[n], f, m]
         for n in range(start, count):
             across = order[n] == 1
-            axis_functions = functions if across else 1
-            a = places[n] if across else places[n, :1]
-            by = jumps[n, which[axis, n]] if across else point
+            axis_functions = functions_of[n] if across else 1
+            a, by = _along(places[n], jumps[n, which[axis, n]], across, even[n], step, point)
             for m in range(min(n + 1, wanted)):
-                others = functions if order[m] == 1 else 1
-                b = places[m] if order[m] == 1 else places[m, :1]
-                beside = jumps[m, which[axis, m]] if order[m] == 1 else point
+                others = functions_of[m] if order[m] == 1 else 1
+                b, beside = _along(places[m], jumps[m, which[axis, m]], order[m] == 1, even[m], step, point)
                 first, last = _first_reached(size, face, n, m, taus), len(taus)
                 one, other = (evenly[n], evenly[n]) if n == m else (alike[n], alike[m])
                 if one < n or other < m:
@@ -242,7 +286,7 @@ def compiled_kernel(
                     last = max(_first_reached(size, face, one, other, taus), first)
                 for t in range(first, min(begun, last)):
                     if n == m and across:
-                        for f in range(functions):
+                        for f in range(axis_functions):
                             for g in range(f + 1):
                                 between[axis, n, f, m, g, t] = free[n, which[axis, n], f, g, t]
                         low_end, high_end = ends_reached(a, b, length, taus[t])
@@ -289,13 +333,13 @@ def compiled_kernel(
             for t in range(begun if film > 0.0 and evenly[n] == n else 0):
                 if across:
                     left_inside(a, length, film, taus[t], half_done)
-                    for f in range(functions):
+                    for f in range(axis_functions):
                         for k in range(len(a)):
                             everywhere[axis, n, f, t] += by[f, k] * half_done[k]
                     continue
                 images(a, order[n], ends, 1, False, length, film, taus[t], table)
                 everywhere[axis, n, 0, t] = table[0, 1] - table[0, 0]
-    rows, columns, skipped = wanted * patterns, total - start * patterns, start * patterns
+    rows, columns, skipped = ports[wanted], total - ports[start], ports[start]
     kernel, whole, port = (
         np.zeros((len(taus), rows, columns)),
         np.zeros((len(taus), columns)),
@@ -309,8 +353,8 @@ def compiled_kernel(
         left[t] = np.exp(-slowest * taus[t])
     for n in range(count):
         areas[n] = 4 * half[n, 0] * half[n, 1]
-        for i in range(patterns):
-            at = n * patterns + i
+        for i in range(ports[n + 1] - ports[n]):
+            at = ports[n] + i
             for x in range(terms.shape[1]):
                 if terms[i, x, 0] < 0:
                     continue
@@ -326,7 +370,7 @@ def compiled_kernel(
                 whole[t, at - skipped] = whole[t, at - skipped] / areas[n] - left[t] * port[at] * held
             for m in range(min(n + 1, wanted) if n >= start else 0):
                 scale = 1 / (areas[n] * areas[m] * heat_capacity)
-                for j in range(patterns if m < n else i + 1):
+                for j in range(ports[m + 1] - ports[m] if m < n else i + 1):
                     for t in range(len(taus)):
                         sums[t] = 0.0
                     for x in range(terms.shape[1]):
@@ -339,7 +383,7 @@ def compiled_kernel(
                             third = between[2, n, f2, m, g2]
                             for t in range(len(taus)):
                                 sums[t] += first[t] * second[t] * third[t]
-                    other = m * patterns + j
+                    other = ports[m] + j
                     both = port[at] * port[other]
                     for t in range(len(taus)):
                         value = scale * sums[t] - both * left[t]
@@ -347,6 +391,14 @@ def compiled_kernel(
                         if start == 0 and at < rows:
                             kernel[t, at, other] = value
     return kernel, slowest, port, held, whole
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _along(places, jumps, across, even, step, point):
+    """Where a patch's functions along an axis jump, and by how much (F, E)."""
+    if not across:
+        return places[:1], point
+    return (places[:2], step) if even else (places, jumps)
 
 
 @njit(cache=True, inner=True, error_model="numpy")

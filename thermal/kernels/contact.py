@@ -13,8 +13,10 @@ F: fingertips, P: patterns known (patterns.py), M: kept of each, S: moments, n: 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import NamedTuple
 
 import numba
 import numpy as np
@@ -269,35 +271,60 @@ def box_side(
     patches: Patches,
     tips: tuple[Tip, ...],
     level: Resolution,
-    reported: np.ndarray | None = None,
+    whole: Sequence[bool] | None = None,
 ) -> ThermalNetwork:
     """The box's network, M ports a patch, its slowest state first; outputs "object" (J in it) and "loss" (W to the
-    air). size: m. film: W/(m2 K), 0 where not all ports are told. tips: on the patches. reported: as in at_rates."""
-    kept, bases = level.patterns, [one.basis for one in tips]
-    box = box_samples(size, material.conductivity, material.volumetric_heat_capacity, film, patches, bases)
+    air). size: m. film: W/(m2 K), 0 where not all ports are told. tips: on the patches. whole: (N,) of which patches
+    all ports are told, or the even one alone and zeros for the others; None: all of them."""
+    bases, told = [one.basis for one in tips], ports_told(len(tips), level.patterns, whole)
+    box = box_samples(
+        *(size, material.conductivity, material.volumetric_heat_capacity, film, patches, bases),
+        even=told.even,
+    )
     port, rest = box.port, box.impedance[OF_GRASP]
-    weights = [
-        1 / (1 / one.weight + rest[:, f * kept, f * kept] + port[f * kept] ** 2 / (GRASP + box.rate))
-        for f, one in enumerate(tips)
-    ]
-    weight = np.min(weights, axis=0)
+    weight = least_weight(tips, rest, port, box.rate, told.first)
     rate, heat = box.rate, None
     if film > 0:
         rate, rest, heat = _shielded(box, film, rest, tips)
-    fast, ports = at_rates(rest, level, weight, reported)
-    rates, port = np.concatenate(([rate], fast)), port if reported is None else np.where(reported, port, 0.0)
-    held = np.zeros(len(rates))
-    if heat is None:
-        held[0] = box.held
-    else:
+    fast, ports = at_rates(rest, level, weight)
+    rates, held = np.concatenate(([rate], fast)), np.zeros(1 + len(fast))
+    held[0] = box.held
+    if heat is not None:
         net = np.concatenate([one.even for one in tips])
-        held[0] = box.held
         held[1:] = output_row(GRASP, heat, fast, ports, GRASP, net - box.held * port)
-    return ThermalNetwork(
-        rates,
-        np.concatenate((port[None], ports)),
-        outputs={"object": held, "loss": held * rates},
-    )
+    every = np.zeros((len(rates), len(tips) * level.patterns))
+    every[0, told.columns], every[1:, told.columns] = port, ports
+    return ThermalNetwork(rates, every, outputs={"object": held, "loss": held * rates})
+
+
+class Told(NamedTuple):
+    """Of patches' ports, of which not all are told. even: (N,) bool, patches of which the even one alone is. first:
+    (N,) the number of each one's first among those told. columns: (P,) of those told, their numbers among all."""
+
+    even: np.ndarray
+    first: np.ndarray
+    columns: np.ndarray
+
+
+def ports_told(count: int, patterns: int, whole: Sequence[bool] | None) -> Told:
+    """Of so many patches. whole: as in box_side."""
+    even = np.zeros(count, bool) if whole is None else ~np.array(whole, bool)
+    told = np.ones((count, patterns), bool)
+    told[even, 1:] = False
+    first = np.cumsum(told.sum(axis=1)) - told.sum(axis=1)
+    return Told(even, first, np.flatnonzero(told))
+
+
+def least_weight(
+    tips: Sequence[Tip], impedance: np.ndarray, port: np.ndarray, rate: float, first: np.ndarray
+) -> np.ndarray:
+    """(S,) W/K, what an error of a box's impedance (S, P, P) K/W counts at most under any of its tips. port: (P,) of
+    the slowest state, of that rate 1/s. first: (N,) each tip's even port."""
+    weights = [
+        1 / (1 / one.weight + impedance[:, n, n] + port[n] ** 2 / (GRASP + rate))
+        for one, n in zip(tips, first.tolist(), strict=True)
+    ]
+    return np.min(weights, axis=0)
 
 
 def at_rates(

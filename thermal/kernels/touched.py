@@ -218,7 +218,8 @@ def _under(
     for t in range(len(times)):
         taus[t] = diffusivity * times[t]
     kernel, slowest, port, held, heat = compiled_kernel(
-        size, outside, capacity, taus, face, centre, half, nodes, jumps, free, terms, len(face), 0
+        *(size, outside, capacity, taus, face, centre, half, np.zeros(len(face), np.bool_)),
+        *(nodes, jumps, free, terms, len(face), 0),
     )
     slowest *= diffusivity
     rest, warmth, counts, lasting, opened, returned = _samples(

@@ -17,7 +17,6 @@ from functools import lru_cache
 import numpy as np
 
 from ..kernels import (
-    GRASP,
     MOMENTS,
     OF_GRASP,
     Detail,
@@ -29,6 +28,8 @@ from ..kernels import (
     box_samples,
     contact_patterns,
     contact_weight,
+    least_weight,
+    ports_told,
     states,
 )
 from ..matter import Material, SensorStack, Surround
@@ -89,45 +90,35 @@ def box_in_pads(
     what rings cover of its faces; 0 where they cover nothing. size: m. faces: under the elements. rings: ring_sides of
     each, None for an element without a pad. whole: whether all ports of a place are told, or the face's even one alone
     and zeros for the others; None: all of them."""
-    kept, padded, count = level.patterns, [n for n, sides in enumerate(rings) if sides is not None], len(tips)
+    kept, count, told = level.patterns, len(tips), ports_told(len(tips), level.patterns, whole)
+    padded = [n for n, sides in enumerate(rings) if sides is not None and not told.even[n]]
     around = _around(size, faces, [(n, side) for n in padded for side in rings[n] or ()])
-    bases = [tip.basis for tip in tips]
+    bases, squares = [tip.basis for tip in tips], len(padded) * RINGS
+    capacity = material.volumetric_heat_capacity
     box = box_samples(
-        size,
-        material.conductivity,
-        material.volumetric_heat_capacity,
-        0.0,
+        *(size, material.conductivity, capacity, 0.0),
         Patches(*(np.concatenate(pair) for pair in zip(faces, around, strict=True))),
         [*bases, *(bases[n] for n in padded for _ in range(RINGS))],
+        even=[*told.even, *[True] * squares],
     )
-    impedance = box.impedance[OF_GRASP].copy()
-    early = before(material.conductivity / material.volumetric_heat_capacity)
-    early /= material.volumetric_heat_capacity
-    turn = np.zeros((impedance.shape[1], count * (kept + RINGS)))
-    turn[: count * kept, : count * kept] = np.eye(count * kept)
+    impedance, of_faces = box.impedance[OF_GRASP].copy(), len(told.columns)
+    early = before(material.conductivity / capacity) / capacity
+    turn = np.zeros((of_faces + squares, of_faces + squares))
+    turn[:of_faces, :of_faces] = np.eye(of_faces)
     for r, n in enumerate(padded):
-        squares = range(count + r * RINGS, count + (r + 1) * RINGS)
+        first = of_faces + r * RINGS
         areas = [float(faces.areas[n]), *around.areas[r * RINGS : (r + 1) * RINGS].tolist()]
-        face = slice(n * kept, (n + 1) * kept), tips[n].even
-        first = count * kept + n * RINGS
-        to_rings(impedance, turn, face, [each * kept for each in squares], areas, early, first)
+        face = slice(told.first[n], told.first[n] + kept), tips[n].even
+        to_rings(impedance, turn, face, range(first, first + RINGS), areas, early, first)
     rest, port = turn.T @ impedance @ turn, box.port @ turn
-    weights = [
-        1 / (1 / tip.weight + rest[:, f * kept, f * kept] + port[f * kept] ** 2 / (GRASP + box.rate))
-        for f, tip in enumerate(tips)
-    ]
-    reported = None
-    if whole is not None:
-        reported = np.repeat(whole, kept)
-        reported[::kept] = True
-        reported = np.concatenate((reported, np.repeat(whole, RINGS)))
-        port = np.where(reported, port, 0.0)
-    fast, ports = at_rates(rest, level, np.min(weights, axis=0), reported)
+    fast, ports = at_rates(rest, level, least_weight(tips, rest, port, box.rate, told.first))
     rates, ports = np.concatenate(([box.rate], fast)), np.concatenate((port[None], ports))
     held = np.zeros(len(rates))
     held[0] = box.held
-    outputs = {"object": held, "loss": held * rates}
-    return ThermalNetwork(rates, ports[:, : count * kept], outputs=outputs), ports[:, count * kept :]
+    every, beside = np.zeros((len(rates), count * kept)), np.zeros((len(rates), count * RINGS))
+    every[:, told.columns] = ports[:, :of_faces]
+    beside[:, [n * RINGS + r for n in padded for r in range(RINGS)]] = ports[:, of_faces:]
+    return ThermalNetwork(rates, every, outputs={"object": held, "loss": held * rates}), beside
 
 
 def _around(

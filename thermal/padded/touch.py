@@ -101,15 +101,18 @@ def _seen(
         np.repeat(fronts.centre, each, axis=0),
         np.stack(halves, axis=1).reshape(tips * each, 2),
     )
-    box = box_samples(size, material.conductivity, material.volumetric_heat_capacity, film, nested)
+    even = [False, *[True] * RINGS] * tips
+    box = box_samples(
+        size, material.conductivity, material.volumetric_heat_capacity, film, nested, even=even
+    )
     early = before(material.conductivity / material.volumetric_heat_capacity)
     early /= material.volumetric_heat_capacity
     impedance, flows = box.impedance.copy(), count + RINGS
-    turn = np.zeros((impedance.shape[1], tips * flows))
+    turn = np.zeros((tips * flows, tips * flows))
     for f in range(tips):
-        face, first = f * each * count, f * flows
+        face = first = f * flows
         turn[face : face + count, first : first + count] = np.eye(count)
-        rows, squares = slice(face, face + count), [face + ring * count for ring in range(1, each)]
+        rows, squares = slice(face, face + count), range(face + count, face + flows)
         areas = nested.areas[f * each : (f + 1) * each].tolist()
         to_rings(impedance, turn, (rows, GRAM[0]), squares, areas, early, first + count)
     return BoxSamples(

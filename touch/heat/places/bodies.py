@@ -245,7 +245,5 @@ def _side(
     patches = Patches(faces, middles, half)
     if any(sides is not None for sides in around):
         return box_in_pads(material, size, patches, seen, around, level, whole)
-    reported = np.repeat(whole, level.patterns)
-    reported[:: level.patterns] = True
-    side = box_side(material, size, 0.0, patches, seen, level, reported)
+    side = box_side(material, size, 0.0, patches, seen, level, whole)
     return side, np.zeros((len(side.rates), 0))
