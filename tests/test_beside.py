@@ -166,7 +166,7 @@ CASES = {
     "compile_fields_ahead": (
         {"objects": "golf_ball"},
         "",
-        {"advance_fields", "compiled_residues", "_element_states", "rate_states", "_fill", "begin_contacts"}
+        {"advance_fields", "passive_states", "_element_states", "_fill", "begin_contacts"}
         | {"meet_rows", "tell_fields", "tell_temperatures", "measure_rows"},
     ),
 }

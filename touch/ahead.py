@@ -10,7 +10,6 @@ from thermograsp.compiled import compile_beside
 
 from ..thermal import sensor
 from ..thermal.kernels import GRASP, Resolution, at_rates, element_samples
-from ..thermal.numerics import port_residues
 from ..thermal.readout import compile_measuring
 from .contacts import read_contacts, sense_contacts
 from .heard import compile_hearing, compile_record_hearing
@@ -28,14 +27,12 @@ def start_compiling(recorded: bool) -> None:
 
 def compile_ahead() -> None:
     """What it does for one MjData. First what no first process is compiling at that time."""
-    port_residues(np.ones((2, 2)), np.ones((2, 1, 1)), np.ones(2))
     compile_hearing()
     _rest()
 
 
 def compile_records_ahead() -> None:
     """The same for recorded sensors."""
-    port_residues(np.ones((2, 2)), np.ones((2, 1, 1)), np.ones(2))
     compile_record_hearing()
     _rest()
 

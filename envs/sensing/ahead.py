@@ -49,7 +49,6 @@ from ...thermal.kernels import (
     touched_box,
 )
 from ...thermal.network import workspace
-from ...thermal.numerics import port_residues
 from ...thermal.readout import compile_measuring
 from ..footprint import PAD
 from .kernel import _reading
@@ -88,7 +87,6 @@ def compile_fields_ahead() -> None:
     not wait for any of it."""
     from .field_kernel import compile_fields
 
-    port_residues(np.ones((2, 2)), np.ones((2, 1, 1)), np.ones(2))
     compile_tip_states()
     _contacts()
     curved_table(PAD, None, material("glass"), _SIDE)

@@ -116,7 +116,7 @@ def test_round_pads_on_ellipsoids_touch_as_in_numpy(kind: Kind) -> None:
     numbers = radii, curve, bend, lean, turn, off, force
     for found, expected in zip(touched(*map(kind.of, numbers)), touched(*numbers), strict=True):
         assert np.isfinite(expected).all()
-        np.testing.assert_allclose(np.asarray(found), expected, rtol=1e-9)
+        np.testing.assert_allclose(np.asarray(found), expected, rtol=1e-9, atol=1e-15)
 
 
 @pytest.mark.parametrize("count", [2, 3, 5])

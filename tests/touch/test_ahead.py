@@ -103,6 +103,6 @@ def test_what_is_compiled_ahead_is_what_a_first_touch_takes(tmp_path: Path, func
         told[name] = done.stdout.splitlines()
     made, found = set(told["ahead"]), set(told["touch"][:-1])
     names = {line.split()[1] for line in made}
-    assert {*READ[function], "sample", "close_sample", "measure_rows", "_residues", "rate_states"} <= names
+    assert {*READ[function], "sample", "close_sample", "measure_rows", "passive_states"} <= names
     assert made <= found
     assert told["touch"][-1] == told["alone"][-1]

@@ -12,7 +12,6 @@ F: fingertips, P: patterns known (patterns.py), M: kept of each, S: moments, n: 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
@@ -26,12 +25,10 @@ from thermograsp.compiled import njit
 from ..matter import Material, SensorStack
 from ..numerics import (
     ThermalNetwork,
-    compiled_residues,
     least_row,
     output_row,
     passive_residues,
-    port_residues,
-    turn_diagonal,
+    passive_states,
 )
 from .box import BoxSamples, Patches, box_samples
 from .coverage import Rectangle, Spot, contact_patterns, spot_patterns
@@ -194,9 +191,9 @@ def _pressed(
         alone[s] = rest[s, 0, 0]
         weight[s] = 1 / (alone[s] + 1 / (_WEIGHED * area))
         rest[s, 0, 0] -= slow_part[s]
-    found = compiled_residues(columns, rest, weight, False)
+    fast, fast_ports = passive_states(columns, rest, weight, decay, least / weight[-1])
     states, ports = _element_states(
-        found, weight, moments, decay, least, slow, seen, drops, heats, drop_rest, heat_rest
+        fast, fast_ports, weight, moments, slow, seen, drops, heats, drop_rest, heat_rest
     )
     return states, ports, told
 
@@ -220,23 +217,18 @@ def _rest(known: Element) -> tuple[np.ndarray, np.ndarray]:
 
 def compile_tip_states() -> None:
     """Compiles what makes a fingertip's network of its impedance, as `tip` does."""
-    samples, decay = np.ones(len(GRASP)), Resolution(2, 1).decay
-    rest, columns, slow = (
-        numba.typeof(np.ones((1, 1, 2))),
-        numba.typeof(np.ones((1, 1))),
-        numba.typeof(samples),
-    )
-    fixed = numba.typeof(decay)
-    compiled_residues.get_call_template((columns, rest, slow, numba.types.boolean), {})
-    arguments = (rest, slow, numba.typeof(GRASP), fixed, numba.types.float64, *(slow,) * 6)
+    samples, columns = numba.typeof(np.ones(1)), numba.typeof(np.ones((1, 1)))
+    residues = numba.typeof(np.ones((1, 1, 1))), samples, numba.typeof(Resolution(2, 1).decay)
+    passive_states.compile((columns, *residues, numba.types.float64))
+    arguments = (samples, columns, samples, numba.typeof(GRASP), *(samples,) * 6)
     _element_states.get_call_template(arguments, {})
 
 
 @njit(cache=True, inner=True, short_loops=True, error_model="numpy")
-def _element_states(found, weight, moments, decay, least, slow, seen, drops, heats, drop_rest, heat_rest):
+def _element_states(fast, fast_ports, weight, moments, slow, seen, drops, heats, drop_rest, heat_rest):
     """Rates, drop and heat (3, n) and ports (n, M) of an element's states: the slow ones of rates slow (K,), ports seen
-    (K,), drops and heats, then those of residues found (M, M, rates). The rest as in Resolution and Element."""
-    count, kept, samples = len(slow), len(found), len(moments)
+    (K,), drops and heats, then those of rates fast (n - K,) and fast_ports (n - K, M). The rest as in Element."""
+    count, kept, samples = len(slow), fast_ports.shape[1], len(moments)
     wanted = np.zeros((2, samples, kept))
     for s in range(samples):
         wanted[0, s, 0], wanted[1, s, 0] = drop_rest[s], heat_rest[s]
@@ -246,7 +238,6 @@ def _element_states(found, weight, moments, decay, least, slow, seen, drops, hea
     for k in range(count):
         jumps[0, 0] -= drops[k] * seen[k]
         jumps[1, 0] -= heats[k] * seen[k]
-    fast, fast_ports = rate_states(found, decay, least / weight[-1])
     states = count + len(fast)
     told, ports = np.empty((3, states)), np.zeros((states, kept))
     rates, drop, heat = told[0], told[1], told[2]
@@ -334,7 +325,8 @@ def at_rates(
     at GRASP. weight: (S,) W/K of its errors. reported: (N,) bool, the ports that the network has; zeros for the others,
     by which it has fewer states. None: all of them."""
     if reported is None or reported.all():
-        return states(impedance, level.decay, weight, level.least / weight[-1])
+        told = fades(level.decay), np.ascontiguousarray(impedance), weight
+        return passive_states(*told, level.decay, level.least / weight[-1])
     rates, few = at_rates(impedance[:, reported][:, :, reported], level, weight)
     ports = np.zeros((len(rates), len(reported)))
     ports[:, reported] = few
@@ -370,39 +362,3 @@ def residues(impedance: np.ndarray, rates: np.ndarray, weight: np.ndarray) -> np
 def fades(rates: np.ndarray) -> np.ndarray:
     """(S, K) s of a unit residue at each rate, at GRASP."""
     return 1 / (GRASP[:, None] + rates)
-
-
-def states(
-    impedance: np.ndarray, rates: np.ndarray, weight: np.ndarray, least: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """Rates (n,) 1/s and ports (n, N) sqrt(K/J) of the states of such a network. least: K/W, resistance of a state that
-    is left out. Larger ones fade as they come near it, so that round-off decides nothing."""
-    return rate_states(port_residues(fades(rates), np.ascontiguousarray(impedance), weight), rates, least)
-
-
-@njit(cache=True, short_loops=True, error_model="numpy")
-def rate_states(found, rates, least):
-    """The same of residues found (N, N, K), which it writes over."""
-    count, all_rates = len(found), len(rates)
-    turn, room = np.zeros_like(found), np.empty((4, all_rates))
-    for i in range(count):
-        turn[i, i] = 1.0
-    turn_diagonal(found, turn, room)
-    kept = count * all_rates
-    for k in range(all_rates):
-        for i in range(count):
-            kept -= found[i, i, k] <= least * rates[k]
-    fading, ports = np.empty(kept), np.empty((kept, count))
-    n = 0
-    for k in range(all_rates):
-        share = least * rates[k]
-        for i in range(count):
-            value = found[i, i, k]
-            if value <= share:
-                continue
-            size = math.sqrt(value - share * share / value)
-            fading[n] = rates[k]
-            for j in range(count):
-                ports[n, j] = size * turn[i, j, k]
-            n += 1
-    return fading, ports

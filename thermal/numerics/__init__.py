@@ -15,6 +15,7 @@ from .passive_residues import (
     free_residues,
     mirrored_residues,
     passive_residues,
+    passive_states,
     port_residues,
 )
 from .reduction import Sampled, hankel_values, interpolate, sampled_fields, truncate
@@ -57,6 +58,7 @@ __all__ = [
     "namespace_of",
     "output_row",
     "passive_residues",
+    "passive_states",
     "port_residues",
     "radial_axis",
     "rates",

@@ -48,13 +48,59 @@ def _residues(*told):
 @njit(cache=True, inner=True, error_model="numpy")
 def compiled_residues(columns, wanted, weight, mirrored):
     """port_residues, or mirrored_residues, whose two problems end together."""
-    samples, wide = (
-        len(columns),
-        -(-columns.shape[1] // LANES) * LANES,
-    )  # columns of zeros fill the last lanes
     groups, half = 1, len(wanted[0])
     if mirrored:
         groups, half = 2, half // 2
+    size, solve, seen, inside = _begun(columns, wanted, weight, groups, half)
+    wide = len(size)
+    _in_cone(solve, seen, inside)
+    found = np.empty((groups * half, groups * half, columns.shape[1]))
+    for i in range(half):
+        for j in range(i + 1):
+            for k in range(columns.shape[1]):
+                same, across = inside[i, j, k] / size[k], 0.0
+                if mirrored:
+                    other = inside[i, j, wide + k] / size[k]
+                    same, across = (same + other) / 2, (same - other) / 2
+                for m in range(groups):  # either half sees its own flows, and the other's
+                    to, beside = m * half, (groups - 1 - m) * half
+                    found[to + i, beside + j, k] = found[to + j, beside + i, k] = across
+                    found[to + i, to + j, k] = found[to + j, to + i, k] = same
+    return found
+
+
+@njit(cache=True, error_model="numpy")
+def passive_states(columns, wanted, weight, rates, least):
+    """Rates (n,) 1/s and ports (n, N) of the states of port_residues' network: a residue's eigenvectors, as they were
+    found. rates: (K,) of the columns. least: resistance of a state that is left out. Larger ones fade as they come near
+    it, so that round-off decides nothing."""
+    count = len(wanted[0])
+    size, solve, seen, inside = _begun(columns, wanted, weight, 1, count)
+    turn, turned = _in_cone(solve, seen, inside)
+    kept = 0
+    for k in range(len(rates)):
+        for i in range(count):
+            kept += turned[i, i, k] > least * rates[k] * size[k]
+    fading, ports = np.empty(kept), np.empty((kept, count))
+    n = 0
+    for k in range(len(rates)):
+        share = least * rates[k]
+        for i in range(count):
+            if turned[i, i, k] > share * size[k]:
+                value = turned[i, i, k] / size[k]
+                fading[n] = rates[k]
+                for j in range(count):
+                    ports[n, j] = np.sqrt(value - share * share / value) * turn[i, j, k]
+                n += 1
+    return fading, ports
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def _begun(columns, wanted, weight, groups, half):
+    """The columns' sizes (K,) at unit weight; what _in_cone takes: solve (K, K), seen and the first guess inside
+    (half, half, groups K). Columns of zeros fill the last lanes."""
+    samples, wide = len(columns), -(-columns.shape[1] // LANES) * LANES
+    mirrored = groups > 1
     scaled, size, inverse = np.zeros((samples, wide)), np.ones(wide), np.empty((2, wide, wide))
     _inverses(columns, weight, (_RIDGE, _PENALTY), scaled, size, inverse)
     rates, values = groups * wide, np.empty(samples)
@@ -75,20 +121,7 @@ def compiled_residues(columns, wanted, weight, mirrored):
                     put_sum(seen, at + n, scaled, n, wide, values, 0, samples)
                 for n in range(0, wide, LANES):
                     put_sum(inside, at + n, inverse, n, wide, seen, at, wide)
-    _in_cone(inverse[1], seen, inside)
-    found = np.empty((groups * half, groups * half, columns.shape[1]))
-    for i in range(half):
-        for j in range(i + 1):
-            for k in range(columns.shape[1]):
-                same, across = inside[i, j, k] / size[k], 0.0
-                if mirrored:
-                    other = inside[i, j, wide + k] / size[k]
-                    same, across = (same + other) / 2, (same - other) / 2
-                for m in range(groups):  # either half sees its own flows, and the other's
-                    to, beside = m * half, (groups - 1 - m) * half
-                    found[to + i, beside + j, k] = found[to + j, beside + i, k] = across
-                    found[to + i, to + j, k] = found[to + j, to + i, k] = same
-    return found
+    return size, inverse[1], seen, inside
 
 
 @njit(cache=True, error_model="numpy")
@@ -154,7 +187,8 @@ def _inverse(matrix, ridge, out):
 @njit(cache=True, inner=True, error_model="numpy")
 def _in_cone(solve, seen, inside):
     """Turns the first guess inside (N, N, G K) into the answer; of these and of seen (N, N, G K) it looks at the lower
-    half. solve: (K, K) symmetric."""
+    half. solve: (K, K) symmetric. Returns the answer's eigenvectors (N, N, G K) in rows, and on a diagonal its
+    eigenvalues, of which it has those above 0."""
     ports, rates, each = seen.shape[1], seen.shape[2], len(solve)
     dual, moved = np.zeros_like(seen), np.empty_like(seen)
     turn, half = np.zeros_like(seen), np.empty_like(seen)  # eigenvector, component
@@ -201,6 +235,7 @@ def _in_cone(solve, seen, inside):
                     moving = max(moving, pulled[k])
         if moving < _SETTLED:
             break
+    return turn, moved
 
 
 @njit(cache=True, inner=True, borrows=True, error_model="numpy", forceinline=True)
