@@ -86,7 +86,8 @@ def test_its_voltages_are_those_of_thermal_touch(case: dict) -> None:
     model = install(mujoco.MjSpec.from_string(hand.scene()), **words)
     data, touch = mujoco.MjData(model), ThermalTouch(model, **words, chain=IDEAL)
     assert np.array_equal(voltages(model, data) != 0, [pad.heated is not None for pad in touch._pads])
-    touching = set()
+    touching, idle = set(), []
+    patterns = touch._heat._level.patterns
     for number, (force, x, z) in enumerate(ORDERS):
         order(data, force, x, z, hand.FINGERS[: 2 + number % 2])
         for n in range(150):
@@ -102,10 +103,10 @@ def test_its_voltages_are_those_of_thermal_touch(case: dict) -> None:
                 difference = voltages(model, data) - sent(touch)
                 assert np.abs(difference / per_kelvin(touch)).max() < ROUND_OFF
                 touching.add(reading.touching)
-    assert len(touching) > 2
-    (can, _), patterns = touch._heat._fields[0], touch._heat._level.patterns
-    idle = [can.port(n, patterns) for n, whole in enumerate(can.whole) if not whole]
-    assert len(idle) > len(PADS) and not any(port[:, 1:].any() for port in idle)
+                can = touch._heat._fields[0][0]
+                idle += [can.port(n, patterns) for n, whole in enumerate(can.whole) if not whole]
+    assert len(touching) > 2 and not any(port[:, 1:].any() for port in idle)
+    assert idle or "objects" not in case  # aluminium soon has none that is remembered
 
 
 @NEEDS_SPECS
@@ -139,8 +140,9 @@ def test_after_long_slides_its_voltages_are_still_those_of_thermal_touch(
         assert furthest(model, data, touch) < ROUND_OFF
         places.update(place for field in touch._heat._fields[0] for place in field.places)
         most = max(most, *(len(field.places) for field in touch._heat._fields[0]))
-    if skin is None:
-        assert most == len(PADS) + MOST_PLACES and len(places) > most + len(PADS)  # many have been forgotten
+    if skin is None:  # many have been forgotten, in copper since nothing was felt of them
+        assert len(places) > most + len(PADS)
+        assert (most == len(PADS) + MOST_PLACES) == (name != "copper")
 
 
 @NEEDS_SPECS

@@ -16,11 +16,10 @@ SIZE = np.array([0.02, 0.06, 0.06])
 STACK = sensor("seed")
 
 
-def joined() -> JoinedHeat:
-    """One bare sensor on a box of glass."""
+def joined(made: str = "glass") -> JoinedHeat:
+    """One bare sensor on a box."""
     pad = PadPlace("tip", 0, (), np.zeros(3), np.eye(3), np.full(2, 0.02), STACK, 36.0)
-    glass = material("glass")
-    shape = BodyShape("box", 0, (), glass, 24.0, SIZE, np.zeros(3), np.eye(3), SIZE, 0.01)
+    shape = BodyShape("box", 0, (), material(made), 24.0, SIZE, np.zeros(3), np.eye(3), SIZE, 0.01)
     return JoinedHeat((pad,), (), (shape,), worlds=1, dt=0.01, tolerance=0.05, film=0.0, ambient=24.0)
 
 
@@ -88,9 +87,27 @@ def test_the_place_is_forgotten_whose_loss_is_least() -> None:
     assert sorted(both) == [1, 3]
 
 
-def test_of_places_where_nothing_has_flowed_the_oldest_goes() -> None:
+def test_of_places_that_are_as_good_the_oldest_goes() -> None:
+    """And all where nothing has flowed."""
     _, field, states = warmed(5)
-    assert forgotten(field, 3, np.zeros(len(states)), [1, 2, 3], 2) == [1, 2]
+    found = forgotten(field, 3, np.zeros(len(states)), [1, 2, 3], 2)
+    assert found == [1, 2, 3]
+
+
+def test_places_of_which_nothing_is_felt_are_forgotten() -> None:
+    """On aluminium soon, where a place that is forgotten changes the drop by less than it is allowed to."""
+    heat, kept = joined("aluminium"), joined("aluminium")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("thermograsp.touch.heat.places.forgetting._UNFELT", 0.0)
+        for n in range(8):
+            for _ in range(200):
+                kept.advance(touch(-12.0 + 6 * (n % 5)), 1)
+        assert len(kept._fields[0][0].places) == 5
+    for n in range(8):
+        for _ in range(200):
+            heat.advance(touch(-12.0 + 6 * (n % 5)), 1)
+    assert len(heat._fields[0][0].places) < 4
+    np.testing.assert_allclose(heat.drop, kept.drop, rtol=0, atol=2e-3)
 
 
 def test_a_place_left_a_while_ago_has_the_even_flow_alone() -> None:

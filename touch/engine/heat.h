@@ -185,7 +185,8 @@ void heat_copy_network(const Numbers* numbers, const Network* from, Network* to)
 size_t heat_network_room(const Numbers* numbers);
 int heat_used_ports(const Numbers* numbers, const Network* network, int* ports);
 void heat_carry(const Numbers* numbers, const Network* before, const Network* after, double* x, double* room);
-int heat_forgotten(const Numbers* numbers, const Network* network, const double* x, const bool* idle, const bool* gone, double* room);
+int heat_forgotten(const Numbers* numbers, const Network* network, const double* x, const bool* idle, const bool* gone, bool need,
+                   double* room);
 size_t heat_carry_room(const Numbers* numbers);
 
 void heat_diagonalise(int n, int count, double* matrix, double* turn);

@@ -13,6 +13,7 @@ which places are remembered, and how an object's field survives a change of them
 #define TIE 1e-6      /* round-off does not decide where a pad is in the middle, between faces or points of the grid */
 #define ANOTHER 0.1   /* by which another face of the box must look more at the pad than the one in use */
 #define SOON 0.5      /* s, from when on what is lost with a place counts */
+#define UNFELT 1e-3   /* K, that what is lost may be felt as at a place that is forgotten without need */
 #define RIDGE 1e-4    /* of a port's mean square */
 #define ALIKE 1e-6    /* relative: round-off does not decide between places of which as much would be lost */
 
@@ -149,17 +150,21 @@ void heat_carry(const Numbers* numbers, const Network* before, const Network* af
 }
 
 /* The idle place, not gone yet, without which the field x changes least: touch/heat/places/forgetting.py. Of such as good as
-each other the first. */
-int heat_forgotten(const Numbers* numbers, const Network* network, const double* x, const bool* idle, const bool* gone,
+each other the first. -1 where there is none, or no need and something of its loss would be felt. */
+int heat_forgotten(const Numbers* numbers, const Network* network, const double* x, const bool* idle, const bool* gone, bool need,
                    double* room) {
+  bool any = false;
+  for (int n = 0; n < network->count; n++) any = any || (idle[n] && !gone[n]);
+  if (!any) return -1;
   int patterns = numbers->patterns, used[network->count * patterns + 1], few = heat_used_ports(numbers, network, used);
   int alive[few + 1], left = 0;
   for (int a = 0; a < few; a++)
     if (!gone[used[a] / patterns]) alive[left++] = a;
   double *gram = room, *remaining = gram + few * few, *inverse = remaining + left * left, *block = inverse + left * left;
   double *turned = block + patterns * patterns, *hears = turned + patterns * patterns, *flows = hears + few;
-  double lost[network->count + 1], least = INFINITY;
+  double lost[network->count + 1], shown[network->count + 1], least = INFINITY;
   memset(lost, 0, sizeof lost);
+  memset(shown, 0, sizeof shown);
   for (int first = 1, last; first < network->n; first = last) {
     last = next_rate(network, first);
     double ridge = 0, share = exp(-2 * network->rates[first] * SOON);
@@ -173,6 +178,7 @@ int heat_forgotten(const Numbers* numbers, const Network* network, const double*
           gram[a * few + b] += port[i] * network->ports[(size_t)used[b] * numbers->states + i];
       }
       ridge += RIDGE * gram[a * few + a] / few;
+      if (used[a] % patterns == 0) shown[used[a] / patterns] += share * gram[a * few + a];
     }
     for (int a = 0; a < left; a++)
       for (int b = 0; b < left; b++) remaining[a * left + b] = gram[alive[a] * few + alive[b]] + (a == b ? ridge : 0);
@@ -198,7 +204,7 @@ int heat_forgotten(const Numbers* numbers, const Network* network, const double*
     if (idle[n] && !gone[n] && !(lost[n] > least * (1 + ALIKE))) first = n;
   for (int n = network->count - 1; n >= 0 && !isfinite(least); n--)
     if (idle[n] && !gone[n]) first = n;
-  return first;
+  return first >= 0 && !need && !(lost[first] * shown[first] <= UNFELT * UNFELT) ? -1 : first;
 }
 
 /* How many networks this process has made, by which tests see that they are kept. */
@@ -308,7 +314,8 @@ static void move(const Numbers* numbers, Work* work, State* state, int o, const 
     places[n * SLOT + ALL] = !idle[n] || left[n];
     over += idle[n];
   }
-  for (; over > 0; over--) gone[heat_forgotten(numbers, old, state->x + o * numbers->states, idle, gone, work->room)] = true;
+  for (int n; (n = heat_forgotten(numbers, old, state->x + o * numbers->states, idle, gone, over > 0, work->room)) >= 0; over--)
+    gone[n] = true;
   for (int n = 0; n < count; n++) {
     if (gone[n]) continue;
     memcpy(remembered + kept * SLOT, places + n * SLOT, sizeof(double) * SLOT);
