@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from operator import mul
 
 import numpy as np
 
 from ..meshes import ABOVE, PlacedPatch, place_patch
-from ..surfaces import FACING, SurfacePatch
+from ..surfaces import FACING, SurfacePatch, twice_areas
 
 _FAR = 0.05  # m, from where on an end is not felt
 _SAMPLES = (1.0, 1.3, 1.7, 2.2, 3.0, 4.0)  # half widths from the middle at which a face is looked for
@@ -31,7 +34,7 @@ _BASES = 0.5 * np.array(
 _AROUND = 0.95 * np.array([[x, y] for x in (-1, 0, 1) for y in (-1, 0, 1) if x or y])  # half widths
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Beneath:
     """What lies beneath a place. depth: m. curvature: (2,) 1/m along its sides. ends: (2, 2) m along each side to where
     the face ends either way, negative where its middle lies beyond. plain: whether it is as a box there, bent a little:
@@ -46,6 +49,11 @@ class Beneath:
     wet: bool
     within: bool
 
+    @cached_property
+    def own(self) -> tuple[int, np.ndarray, np.ndarray] | None:
+        """Where the place itself is on that box, as on_box has it."""
+        return self.on_box(self.placed)
+
     @property
     def size(self) -> tuple[float, float, float]:
         """m of the box that stands for it."""
@@ -55,40 +63,58 @@ class Beneath:
     def on_box(self, other: PlacedPatch) -> tuple[int, np.ndarray, np.ndarray] | None:
         """The face of that box on which a patch lies, as kernels.Patches has it, with its middle and half widths (2,) m
         there; None where it lies on no face. The curved face is unrolled."""
-        axes = np.stack((*self.placed.sides, self.placed.normal))
-        size, half, wide = np.array(self.size), other.half_width, np.full(2, other.half_width)
-        offset, along = axes @ (other.centre - self.placed.centre), axes @ other.normal
-        arcs, level, outward = self._unrolled(offset)
-        if abs(level) < _LEVEL * half and outward @ along > _ALONG:
-            offset, along = np.append(arcs, level), np.eye(3)[2]
-        elif abs(level + self.depth) < _LEVEL * half and outward @ along < -_ALONG:
+        # of numbers, as arrays of three take ten times as long
+        half, depth, (sides, first, last, curvature) = other.half_width, self.depth, self._numbers
+        away = (other.centre - self.placed.centre).tolist()
+        looks = other.normal.tolist()
+        offset = [sum(map(mul, side, away)) for side in sides]
+        along = [sum(map(mul, side, looks)) for side in sides]
+        wide = [half, half, half]
+        arcs, level, facing = _unrolled(curvature, offset, along)
+        if abs(level) < _LEVEL * half and facing > _ALONG:
+            offset, along = [*arcs, level], [0.0, 0.0, 1.0]
+        elif abs(level + depth) < _LEVEL * half and facing < -_ALONG:
             # as wide there as the wall's other side is shorter
-            offset, along = np.append(arcs, level), -np.eye(3)[2]
-            wide /= 1 - self.curvature * self.depth
-        middle = offset + [*self.ends[:, 0], self.depth]
-        axis = int(np.argmax(np.abs(along)))
+            offset, along = [*arcs, level], [0.0, 0.0, -1.0]
+            wide = [*(half / (1 - bend * depth) for bend in curvature), half]
+        size = [first[0] + last[0], first[1] + last[1], depth]
+        middle = [offset[0] + first[0], offset[1] + first[1], offset[2] + depth]
+        axis = max(range(3), key=lambda k: abs(along[k]))
         far = along[axis] > 0
-        rest = [k for k in range(3) if k != axis]
-        beside = abs(middle[axis] - (size[axis] if far else 0.0)) > _LEVEL * half
         if (
             abs(along[axis]) < _ALONG
-            or beside
-            or np.any(middle[rest] < 0)
-            or np.any(middle[rest] > size[rest])
+            or abs(middle[axis] - (size[axis] if far else 0.0)) > _LEVEL * half
+            or any(not 0 <= middle[k] <= size[k] for k in range(3) if k != axis)
         ):
             return None
-        low, high = (np.clip(middle[rest] + way * wide, 0.0, size[rest]) for way in (-1, 1))
-        return 2 * axis + far, (low + high) / 2, (high - low) / 2
+        ends = [
+            (max(middle[k] - reach, 0.0), min(middle[k] + reach, size[k]))
+            for k, reach in zip((k for k in range(3) if k != axis), wide, strict=False)
+        ]
+        centre = np.array([(low + high) / 2 for low, high in ends])
+        return 2 * axis + far, centre, np.array([(high - low) / 2 for low, high in ends])
 
-    def _unrolled(self, offset: np.ndarray) -> tuple[np.ndarray, float, np.ndarray]:
-        """Of a point (3,) m from the place, along its sides and its normal: how far it is along the curved face (2,) m
-        and above it, m, and the face's normal there."""
-        bend = np.where(np.abs(self.curvature) < FLAT, FLAT, self.curvature)
-        angles = np.arctan2(bend * offset[:2], 1 + bend * offset[2])
-        angles = np.clip(angles, -1.0, 1.0)
-        level = offset[2] + float(np.sum((1 - np.cos(angles)) / bend))
-        outward = np.append(np.sin(angles), np.cos(angles).prod())
-        return angles / bend, level, outward / np.linalg.norm(outward)
+    @cached_property
+    def _numbers(self) -> tuple[list[list[float]], list[float], list[float], list[float]]:
+        """The place's sides and normal; m to where its face ends, back and forth along its sides; their curvature."""
+        axes = [*self.placed.sides.tolist(), self.placed.normal.tolist()]
+        return axes, self.ends[:, 0].tolist(), self.ends[:, 1].tolist(), self.curvature.tolist()
+
+
+def _unrolled(
+    curvature: Sequence[float], offset: Sequence[float], along: Sequence[float]
+) -> tuple[list[float], float, float]:
+    """Of a point m from a place, along its sides and its normal: how far it is along the curved face (2,) m and above
+    it, m, and the cosine between the face's normal there and a unit vector."""
+    bends = [FLAT if abs(each) < FLAT else each for each in curvature]
+    angles = [
+        min(max(math.atan2(bend * aside, 1 + bend * offset[2]), -1.0), 1.0)
+        for bend, aside in zip(bends, offset, strict=False)
+    ]
+    level = offset[2] + sum((1 - math.cos(angle)) / bend for angle, bend in zip(angles, bends, strict=True))
+    outward = [*map(math.sin, angles), math.prod(map(math.cos, angles))]
+    facing = sum(map(mul, outward, along)) / math.hypot(*outward)
+    return [angle / bend for angle, bend in zip(angles, bends, strict=True)], level, facing
 
 
 class _Column:
@@ -98,7 +124,7 @@ class _Column:
     def __init__(self, triangles: np.ndarray, placed: PlacedPatch) -> None:
         local = (triangles - placed.centre) @ np.stack((*placed.sides, placed.normal)).T
         near = local[_within(local[:, :, :2], _SAMPLES[-1] * placed.half_width)]
-        up = np.cross(near[:, 1] - near[:, 0], near[:, 2] - near[:, 0])
+        up = twice_areas(near)
         facing = FACING * np.linalg.norm(up, axis=1)  # 0 of triangles without area
         self._left = _Faces(near[up[:, 2] > facing])
         self._entered = _Faces(near[up[:, 2] < -facing])

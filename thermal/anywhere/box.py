@@ -23,13 +23,18 @@ _PAIRS = 4096  # of places, a few kB each
 
 
 def box_kernels(
-    below: Sequence[Beneath], one: Tip, diffusivity: float, conductivity: float, film: Film | None
+    below: Sequence[Beneath],
+    at: Sequence[slice],
+    one: Tip,
+    diffusivity: float,
+    conductivity: float,
+    film: Film | None,
 ) -> np.ndarray:
-    """(T, P M, P M) 1/m3 at TIMES, of unit material: of patches by themselves and of those on the faces of one box;
-    zero where no box stands for the body. diffusivity: m2/s. conductivity: W/(m K)."""
-    count, taus = LEVEL.patterns, diffusivity * TIMES
-    kernel = np.zeros((len(taus), len(below) * count, len(below) * count))
-    at = [slice(n * count, (n + 1) * count) for n in range(len(below))]
+    """(T, F, F) 1/m3 at TIMES, of unit material: of patches by themselves and of those on the faces of one box; zero
+    where no box stands for the body. at: of each patch its ports among F, all patterns or the even one. diffusivity:
+    m2/s. conductivity: W/(m K)."""
+    taus = diffusivity * TIMES
+    kernel = np.zeros((len(taus), at[-1].stop, at[-1].stop))
     for n, each in enumerate(below):
         if not each.plain:
             continue
@@ -44,7 +49,7 @@ def box_kernels(
                 seen_by_other := _seen_by_other(each, other, one, diffusivity)
             ) is None:
                 continue
-            pair = bent * seen_by_other
+            pair = bent * seen_by_other[:, : at[n].stop - at[n].start, : at[m].stop - at[m].start]
             kernel[:, at[n], at[m]], kernel[:, at[m], at[n]] = pair, pair.transpose(0, 2, 1)
     return kernel
 
@@ -53,25 +58,36 @@ def box_kernels(
 def _seen_by_other(each: Beneath, other: Beneath, one: Tip, diffusivity: float) -> np.ndarray | None:
     """(T, M, M) 1/m3 at TIMES of two patches on the box beneath the first, or of that one by itself; None where the
     second is not on it."""
-    on, far = each.on_box(each.placed), each.on_box(other.placed)
-    if on is None or far is None:
+    on = each.own
+    if on is None or (far := each.on_box(other.placed)) is None:
         return None
-    count, taus = LEVEL.patterns, diffusivity * TIMES
+    taus = diffusivity * TIMES
     if other is each:
         return box_beneath(each, [on], one, taus)
-    return box_beneath(each, [on, far], one, taus)[:, :count, count:]
+    return box_beneath(each, [on, far], one, taus, wanted=1, first=1)
 
 
 def box_beneath(
-    each: Beneath, others: Sequence[tuple[int, np.ndarray, np.ndarray]], one: Tip, taus: np.ndarray
+    each: Beneath,
+    others: Sequence[tuple[int, np.ndarray, np.ndarray]],
+    one: Tip,
+    taus: np.ndarray,
+    *,
+    wanted: int | None = None,
+    first: int = 0,
+    even: Sequence[bool] | None = None,
 ) -> np.ndarray:
-    """(T, M N, M N) 1/m3 between N patches of the box beneath one of them: a face, middle and half widths of each."""
+    """(T, rows, columns) 1/m3 between N patches of the box beneath one of them: a face, middle and half widths of each.
+    wanted, first: as in box_kernel, all of them without. even: (N,) of which patches the even pattern alone is told;
+    None for none of them."""
     faces, middles, halves = zip(*others, strict=True)
     jumps = np.array([basis_jumps(one.basis)] * len(others))
     patches = Patches(np.array(faces), np.array(middles), np.array(halves))
-    terms = basis_terms(LEVEL.patterns)
-    kernel, _, port, _, _ = box_kernel(each.size, 1.0, 1.0, 0.0, patches, jumps, terms, len(others), taus)
-    return kernel + np.outer(port, port)
+    terms, wanted = basis_terms(LEVEL.patterns), len(others) if wanted is None else wanted
+    kernel, _, port, _, _ = box_kernel(
+        *(each.size, 1.0, 1.0, 0.0, patches, jumps, terms, wanted, taus, first), even=even
+    )
+    return kernel + np.outer(port[: kernel.shape[1]], port[len(port) - kernel.shape[2] :])
 
 
 def bent_room(each: Beneath, taus: np.ndarray) -> np.ndarray:

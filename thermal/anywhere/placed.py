@@ -24,7 +24,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..kernels import OF_GRASP, TIMES, TO_MOMENTS, Tip, at_rates, before
+from ..kernels import GRASP, OF_GRASP, TIMES, TO_MOMENTS, Tip, Told, at_rates, before, ports_told
 from ..matter import SensorStack
 from ..meshes import PLATE, PLATE_MATERIAL, BodyModes, Film, TouchedBody, body_modes, film_of, geometry_of
 from ..network import ThermalNetwork
@@ -38,7 +38,6 @@ from .ports import LEVEL, centred_tip
 from .slow import (
     SlowStates,
     crossover_time,
-    modal_impedance,
     modal_kernel,
     modal_share,
     slow_states,
@@ -97,19 +96,19 @@ def placed_network(
     stack: SensorStack,
     film: float = 0.0,
     *,
-    reported: np.ndarray | None = None,
+    whole: Sequence[bool] | None = None,
     cache: bool = True,
 ) -> PlacedNetwork:
-    """film: W/K between the walls of the body's hollow, if it has one, and contents. reported: (P M,) bool, the ports
-    whose heat has states that fade sooner than the body's own; None: all of them. Raises MeshError where a patch meets
-    no surface, or the body is no solid in one piece."""
+    """film: W/K between the walls of the body's hollow, if it has one, and contents. whole: (P,) of which patches all
+    ports have states that fade sooner than the body's own, or the even one alone; None: of all. Raises MeshError where
+    a patch meets no surface, or the body is no solid in one piece."""
     inside = film_of(body, film)
-    found = face_impedance(body, patches, stack, inside, cache)
+    found = face_impedance(body, patches, stack, inside, cache, whole)
     seen = np.concatenate([place.seen for place in found.places])
     slow = slow_states(found.modes, seen, inside)
     level = EMPTY if inside is None else FILLED
     return PlacedNetwork(
-        _fitted(found, slow, found.impedance, level, reported),
+        _fitted(found, slow, found.impedance, level),
         [place.below for place in found.places],
         len(slow.fades),
     )
@@ -117,108 +116,126 @@ def placed_network(
 
 class FaceImpedance(NamedTuple):
     """Of sensors' faces on a body. modes: the body's. one: the sensor's element under its contact. places: where the
-    patches are. impedance: (S, P M, P M) K/W at GRASP, less that of the slow modes."""
+    patches are. told: their ports that are told, F of them. impedance: (S, F, F) K/W of these at GRASP, less that of
+    the slow modes."""
 
     modes: BodyModes
     one: Tip
     places: list[Placed]
+    told: Told
     impedance: np.ndarray
+
+    def ports(self, place: int) -> slice:
+        """Which of those told are a place's."""
+        first = int(self.told.first[place])
+        return slice(first, first + (1 if self.told.even[place] else LEVEL.patterns))
 
 
 def face_impedance(
-    body: Solid, patches: Sequence[SurfacePatch], stack: SensorStack, inside: Film | None, cache: bool
+    body: Solid,
+    patches: Sequence[SurfacePatch],
+    stack: SensorStack,
+    inside: Film | None,
+    cache: bool,
+    whole: Sequence[bool] | None,
 ) -> FaceImpedance:
-    """Raises as placed_network does."""
+    """Arguments and errors as placed_network's."""
     level = EMPTY if inside is None else FILLED
     modes = body_modes(body, inside, cache=cache)
     one = centred_tip(stack, patches[0].area)
     places = [placed_at(body, patch, stack, inside, level, cache) for patch in patches]
-    below = [place.below for place in places]
-    seen = np.concatenate([place.seen for place in places])
+    told = ports_told(len(places), LEVEL.patterns, whole)
+    every = np.concatenate([place.seen for place in places])
+    seen, slow = every[told.columns], slow_states(modes, every, inside)
     taus = modes.diffusivity * TIMES
-    slow = slow_states(modes, seen, inside)
     kernel = modal_kernel(seen, modes.rates, taus)
     over = modal_share(crossover_time(modes, len(body.parts)))[:, None, None]
+    found = FaceImpedance(modes, one, places, told, np.zeros((len(GRASP), len(seen), len(seen))))
+    at = [found.ports(n) for n in range(len(places))]
     if len(body.parts) == 1:
         conductivity = body.parts[0].material.conductivity
-        local = box_kernels(below, one, modes.diffusivity, conductivity, inside) / modes.capacity
+        below = [place.below for place in places]
+        local = box_kernels(below, at, one, modes.diffusivity, conductivity, inside) / modes.capacity
         kernel = over * kernel + (1 - over) * local
-    count, early = LEVEL.patterns, over[:, 0, 0] < 1
-    at = [slice(n * count, (n + 1) * count) for n in range(len(places))]
-    soon = np.zeros(kernel.shape[1:])  # K/W, before the first time
+    early, soon = over[:, 0, 0] < 1, np.zeros(kernel.shape[1:])  # K/W, before the first time
     for place, ports in zip(places, at, strict=True):
+        few = slice(ports.stop - ports.start)
         if place.local is not None:
-            modal = modal_kernel(place.seen, modes.rates, taus)
-            modal[early] += (1 - over[early]) * (place.local.kernel - modal[early])
+            modal = modal_kernel(place.seen[few], modes.rates, taus)
+            modal[early] += (1 - over[early]) * (place.local.kernel[:, few, few] - modal[early])
             kernel[:, ports, ports] = modal
             soon[ports, ports] = np.sqrt(np.pi * TIMES[0]) * before(1.0) * modal[0]
         else:
-            soon[ports, ports] = before(modes.diffusivity) / (modes.capacity * one.area) * np.eye(count)
+            soon[ports, ports] = before(modes.diffusivity) / (modes.capacity * one.area) * np.eye(few.stop)
     grids = []
     for n, m in combinations(range(len(places)), 2):
         if not are_close(places[n], places[m]):
             continue
+        rows, columns = (slice(at[each].stop - at[each].start) for each in (n, m))
         crossing = between_on_cells(body, places[n], places[m], stack, inside, cache)
         if crossing is None:
-            grids.append((n, m, between_on_grids(body, patches[n], patches[m], stack, inside, level, cache)))
+            pair = between_on_grids(body, patches[n], patches[m], stack, inside, level, cache)
+            grids.append((n, m, pair[:, rows, columns]))
             continue
-        late = modal_kernel(places[n].seen, modes.rates, taus, places[m].seen)
-        late[early] += (1 - over[early]) * (crossing - late[early])
+        late = modal_kernel(places[n].seen[rows], modes.rates, taus, places[m].seen[columns])
+        late[early] += (1 - over[early]) * (crossing[:, rows, columns] - late[early])
         kernel[:, at[n], at[m]], kernel[:, at[m], at[n]] = late, late.transpose(0, 2, 1)
-    kernel -= modal_kernel(slow.held.T, slow.fades, TIMES)
+    kernel -= modal_kernel(slow.held.T[told.columns], slow.fades, TIMES)
     impedance = np.tensordot(TO_MOMENTS[OF_GRASP], kernel, axes=1) + soon
     for place, ports in zip(places, at, strict=True):
         if place.impedance is not None:
-            impedance[:, ports, ports] = place.impedance
+            few = slice(ports.stop - ports.start)
+            impedance[:, ports, ports] = place.impedance[:, few, few]
     for n, m, pair in grids:
         impedance[:, at[n], at[m]], impedance[:, at[m], at[n]] = pair, pair.transpose(0, 2, 1)
-    return FaceImpedance(modes, one, places, impedance)
+    return found._replace(impedance=impedance)
 
 
 def ringed_network(
-    found: FaceImpedance,
-    seen: np.ndarray,
-    kernel: np.ndarray,
-    early: np.ndarray,
-    reported: np.ndarray | None = None,
+    found: FaceImpedance, seen: np.ndarray, kernel: np.ndarray, early: np.ndarray
 ) -> tuple[ThermalNetwork, int]:
     """Of an empty body's faces and of J other ports behind them, of even flows; and how many of its states are slow.
-    seen: (J, R) of the modes by these. kernel: (T, P M + J, P M + J) 1/J K of the boxes beneath, at TIMES, before the
-    modes tell; that of faces is known better. early: (J,) K/W of these before then. reported: (P M + J,), as in
-    placed_network."""
+    seen: (J, R) of the modes by these. kernel: (T, F + J, F + J) 1/J K of the boxes beneath, at TIMES, before the modes
+    tell; that of faces is known better. early: (J,) K/W of these before then."""
     modes, faces = found.modes, found.impedance.shape[1]
     every = np.concatenate((*(place.seen for place in found.places), seen))
     slow = slow_states(modes, every, None, len(seen))
+    told = np.concatenate((found.told.columns, np.arange(len(every) - len(seen), len(every))))
     taus = modes.diffusivity * TIMES
     over = modal_share(crossover_time(modes))[:, None, None]
-    kernel = over * modal_kernel(every, modes.rates, taus) + (1 - over) * kernel
-    kernel -= modal_kernel(slow.held.T, slow.fades, TIMES)
+    kernel = over * modal_kernel(every[told], modes.rates, taus) + (1 - over) * kernel
+    kernel -= modal_kernel(slow.held.T[told], slow.fades, TIMES)
     impedance = np.tensordot(TO_MOMENTS[OF_GRASP], kernel, axes=1)
-    others = np.arange(faces, len(every))
+    others = np.arange(faces, len(told))
     impedance[:, others, others] += early
     impedance[:, :faces, :faces] = found.impedance
-    return _fitted(found, slow, impedance, EMPTY, reported), len(slow.fades)
+    return _fitted(found, slow, impedance, EMPTY), len(slow.fades)
 
 
 def _fitted(
-    found: FaceImpedance,
-    slow: SlowStates,
-    impedance: np.ndarray,
-    level: GridFineness,
-    reported: np.ndarray | None,
+    found: FaceImpedance, slow: SlowStates, impedance: np.ndarray, level: GridFineness
 ) -> ThermalNetwork:
-    """The slow states and what fades sooner, of an impedance less that of the former: of the faces, then of others."""
-    modes, one, count = found.modes, found.one, LEVEL.patterns
-    faces = slice(0, len(found.places) * count, count)
-    alone = impedance[:, faces, faces] + modal_impedance(slow.held.T[faces], slow.fades)
-    weight = np.min([1 / (1 / one.weight + alone[:, n, n]) for n in range(len(found.places))], axis=0)
+    """The slow states and what fades sooner, of an impedance less that of the former: of the faces' F ports, then of
+    others."""
+    modes, one, ports = found.modes, found.one, slow.network.ports
+    faces = found.told.first
+    alone = impedance[:, faces, faces] + _by_itself(slow.held.T[found.told.columns[faces]], slow.fades)
+    weight = np.min([1 / (1 / one.weight + each) for each in alone.T], axis=0)
     slowest = max(modes.diffusivity * modes.rates[: state_count(modes)][-1], LEVEL.slowest)
     number = max(4, math.ceil(math.log(LEVEL.fastest / slowest) / math.log(level.pitch)) + 1)
-    fading, ports = at_rates(impedance, replace(LEVEL, rates=number, slowest=slowest), weight, reported)
+    fading, told = at_rates(impedance, replace(LEVEL, rates=number, slowest=slowest), weight)
+    sooner, behind = np.zeros((len(fading), ports.shape[1])), len(told.T) - len(found.told.columns)
+    sooner[:, found.told.columns] = told[:, : len(found.told.columns)]
+    sooner[:, ports.shape[1] - behind :] = told[:, len(found.told.columns) :]
     none = np.zeros(len(fading))
     return ThermalNetwork(
         np.concatenate((slow.network.rates, fading)),
-        np.concatenate((slow.network.ports, ports)),
+        np.concatenate((ports, sooner)),
         slow.network.direct,
         {name: np.concatenate((row, none)) for name, row in slow.network.outputs.items()},
     )
+
+
+def _by_itself(ports: np.ndarray, rates: np.ndarray) -> np.ndarray:
+    """(S, P) K/W at GRASP of ports (P, K) of states of these rates, each by itself."""
+    return 1 / (GRASP[:, None] + rates) @ (ports * ports).T

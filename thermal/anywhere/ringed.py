@@ -10,11 +10,12 @@ P: patches, M: patterns, R: rings, T: times.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from ..kernels import TIMES, before
 from ..matter import SensorStack
@@ -30,7 +31,7 @@ from ..meshes import (
     uniform_pattern,
 )
 from ..network import ThermalNetwork
-from ..surfaces import FACING, Solid, SurfacePatch, crossings
+from ..surfaces import FACING, Solid, SurfacePatch, crossings, twice_areas
 from .beneath import Beneath
 from .box import bent_room, box_beneath
 from .place import is_touchable
@@ -68,29 +69,29 @@ def body_in_pads(
     """The body's network of P M ports, in orthonormal patterns of the sensor's whole face, its output "heat" the J that
     it has gained; (n, P R) ports of even flows into rings of the pads around; and how many of its states, the first
     ones, are the body's own wherever it is touched. sides: (R,) m, the rings' outer sides, none without pads. whole:
-    whether what fades sooner is told of all ports of a place, or of the face's even one alone; None: of all. film: W/K
-    to contents, of sensors without pads. Raises MeshError where a patch meets no surface, or the body is no solid in
+    whether rings are told of a place, and of all its ports what fades sooner, or of the face's even one alone; None: of
+    all places. film: W/K to contents, of sensors without pads. Raises MeshError where a patch meets no surface, or the body is no solid in
     one piece."""
-    reported = None
-    if whole is not None:
-        reported = np.repeat(whole, LEVEL.patterns)
-        reported[:: LEVEL.patterns] = True
-        reported = np.concatenate((reported, np.repeat(whole, len(sides))))
     if not sides:
-        alone = placed_network(body, patches, stack, film, reported=reported, cache=cache)
+        alone = placed_network(body, patches, stack, film, whole=whole, cache=cache)
         return alone.network, np.zeros((len(alone.network.rates), 0)), alone.slow
-    found = face_impedance(body, patches, stack, None, cache)
-    around = [_squares(body, patch, (stack.width, *sides), cache) for patch in patches]
-    modes = found.modes
+    found = face_impedance(body, patches, stack, None, cache, whole)
+    around = {
+        n: _squares(body, patch, (stack.width, *sides), cache)
+        for n, patch in enumerate(patches)
+        if not found.told.even[n]
+    }
+    modes, faces, rings = found.modes, len(patches) * LEVEL.patterns, len(sides)
     kernel = _local(found, around, modes.diffusivity * TIMES) / modes.capacity
-    areas = np.concatenate([np.diff(each.areas) for each in around])
+    areas = np.array([np.diff(each.areas) for each in around.values()]).ravel()
     some = areas > _LEAST * stack.face_area
     early = some * before(modes.diffusivity) / (modes.capacity * np.where(some, areas, 1.0))
-    seen = np.concatenate([each.rings for each in around])
-    made, slow = ringed_network(found, seen, kernel, early, reported)
-    faces, ports = len(patches) * LEVEL.patterns, made.ports
+    seen = np.array([each.rings for each in around.values()]).reshape(len(areas), -1)
+    made, slow = ringed_network(found, seen, kernel, early)
+    ports, beside = made.ports, np.zeros((len(made.rates), len(patches) * rings))
+    beside[:, [n * rings + r for n in around for r in range(rings)]] = ports[:, faces:]
     network = replace(made, ports=ports[:, :faces], direct=made.direct[:faces, :faces])
-    return network, ports[:, faces:], slow
+    return network, beside, slow
 
 
 def surface_patch(
@@ -108,11 +109,13 @@ def surface_patch(
     all the surface, or else where the body reaches farthest that way: simulations touch a mesh's hull, which spans
     openings. film: W/K to contents."""
     places = _places(body.outside, centre, outward, stack.width / 2)
-    patch = SurfacePatch(*next(places), stack.face_area)
-    for place in places:
-        if is_touchable(body, patch, stack, film, cache=cache):
+    patches = (SurfacePatch(*place, stack.face_area) for place in places)
+    patch = next(patches)
+    while not is_touchable(body, patch, stack, film, cache=cache):
+        following = next(patches, None)
+        if following is None:
             break
-        patch = SurfacePatch(*place, stack.face_area)
+        patch = following
     return patch
 
 
@@ -123,7 +126,7 @@ def _places(
     triangles: np.ndarray, centre: np.ndarray, outward: np.ndarray, half: float
 ) -> Iterator[tuple[_Triple, _Triple]]:
     """Places on the surface and their normals, as surface_patch tries them."""
-    across = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    across = twice_areas(triangles)
     facing = triangles[across @ outward > FACING * np.linalg.norm(across, axis=1)]
     facing = facing if len(facing) else triangles
     at, normal = nearest_surface(facing, centre)
@@ -154,7 +157,7 @@ def wall_below(body: Solid, patch: SurfacePatch) -> tuple[float, float]:
             continue
         left = crossings(near, centre + at @ sides, -outward) + face
         thick.append(min(left[left > 0], default=math.inf))
-    areas = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    areas = twice_areas(triangles)
     facing = across.all(axis=1) & (areas @ outward > FACING * np.linalg.norm(areas, axis=1))
     over = (
         across[:, :2].all(axis=1)
@@ -199,46 +202,67 @@ def _between(areas: np.ndarray, squares: np.ndarray, nothing: np.ndarray) -> np.
     return np.array(found)
 
 
-def _local(found: FaceImpedance, around: Sequence[_Squares], taus: np.ndarray) -> np.ndarray:
-    """(T, P M + P R, P M + P R) 1/m3, of unit material, where a face's or a ring's heat warms a ring, by the boxes
-    beneath the places; zero between faces."""
-    count, rings, places = LEVEL.patterns, len(around[0].areas) - 1, len(around)
-    total = places * (count + rings)
+def _local(found: FaceImpedance, around: Mapping[int, _Squares], taus: np.ndarray) -> np.ndarray:
+    """(T, F + J, F + J) 1/m3, of unit material, between faces' ports and rings, by the boxes beneath the places. around:
+    by place, of those that have rings."""
+    faces, rings = len(found.told.columns), len(next(iter(around.values())).rings) if around else 0
+    total, after = faces + len(around) * rings, {n: faces + k * rings for k, n in enumerate(around)}
     kernel, known = np.zeros((len(taus), total, total)), np.zeros((total, total))
     for n, place in enumerate(found.places):
         each = place.below
-        if min(each.size) <= 0 or each.on_box(each.placed) is None:
+        if min(each.size) <= 0 or each.own is None:
             continue
-        on = {m: _on_box(each, squares) for m, squares in enumerate(around)}
-        on = {m: found for m, found in on.items() if found is not None}
+        on = {m: _on_box(each, other.below, around.get(m)) for m, other in enumerate(found.places)}
+        on = {m: rectangles for m, rectangles in on.items() if rectangles is not None}
         if n not in on:
             continue
         order = [n, *(m for m in on if m != n)]
-        rectangles = [rectangle for m in order for rectangle in on[m]]
-        local = bent_room(each, taus) * box_beneath(each, rectangles, found.one, taus)
-        turn, ports = np.zeros((len(rectangles) * count, len(order) * (count + rings))), []
-        for k, m in enumerate(order):
-            first, column = k * (1 + rings) * count, k * (count + rings)
-            turn[first : first + count, column : column + count] = np.eye(count)
-            squares = np.eye(len(turn))[[first + s * count for s in range(1 + rings)]]
-            areas = np.array([4 * float(half.prod()) for _, _, half in on[m]])
-            turn[:, column + count : column + count + rings] = _between(areas, squares, 0 * squares[0]).T
-            ports += [*range(m * count, (m + 1) * count)]
-            ports += [*range(places * count + m * rings, places * count + (m + 1) * rings)]
-        reported = turn.T @ local @ turn
-        alone_ports = count + rings
-        for rows, columns in (
-            (slice(alone_ports), slice(None)),
-            (slice(alone_ports, None), slice(alone_ports)),
+        even = [square > 0 or bool(found.told.even[m]) for m in order for square in range(len(on[m]))]
+        local = box_beneath(
+            *(each, [one for m in order for one in on[m]], found.one, taus), wanted=len(on[n]), even=even
+        )
+        turns, ports = zip(*(_turn(found, on[m], m, after) for m in order), strict=True)
+        turn, at = block_diag(*turns), np.concatenate(ports)
+        local = bent_room(each, taus) * (turns[0].T @ local @ turn)
+        own = len(ports[0])
+        rows, columns = at[:own], at[own:]
+        for one, other, between in (
+            (rows, at, local),
+            (columns, rows, local[:, :, own:].swapaxes(1, 2)),
         ):
-            at = np.ix_(ports[rows], ports[columns])
-            kernel[:, at[0], at[1]] += reported[:, rows, columns]
-            known[at] += 1
+            kernel[:, one[:, None], other] += between
+            known[one[:, None], other] += 1
     return kernel / np.maximum(known, 1)
 
 
-def _on_box(each: Beneath, squares: _Squares) -> list[tuple[int, np.ndarray, np.ndarray]] | None:
-    """The squares' rectangles on the box; None where they lie on no face of it."""
+def _turn(
+    found: FaceImpedance,
+    on: Sequence[tuple[int, np.ndarray, np.ndarray]],
+    place: int,
+    after: Mapping[int, int],
+) -> tuple[np.ndarray, np.ndarray]:
+    """How a place's ports are made of flows over rectangles on a box, the face's patterns first; and which ports these
+    are. after: by place, the number of its first ring."""
+    face = found.ports(place)
+    own = face.stop - face.start
+    turn = np.eye(own)
+    ports = np.arange(face.start, face.stop)
+    if len(on) == 1:
+        return turn, ports
+    squares = np.eye(own + len(on) - 1)[[0, *range(own, own + len(on) - 1)]]
+    areas = np.array([4 * float(half.prod()) for _, _, half in on])
+    turn = np.concatenate((np.eye(own, len(squares.T)), _between(areas, squares, 0 * squares[0])))
+    return turn.T, np.concatenate((ports, after[place] + np.arange(len(on) - 1)))
+
+
+def _on_box(
+    each: Beneath, other: Beneath, squares: _Squares | None
+) -> list[tuple[int, np.ndarray, np.ndarray]] | None:
+    """The rectangles of a place's face and of the squares around it on the box; None where they lie on no face of
+    it."""
+    if squares is None:
+        own = each.own if other is each else each.on_box(other.placed)
+        return None if own is None else [own]
     found = [each.on_box(placed) for placed in squares.placed]
     if any(one is None for one in found):
         return None

@@ -77,10 +77,10 @@ def modal_kernel(
 ) -> np.ndarray:
     """(T, M, M) of ports (M, R) whose states fade at these rates, or between these and others."""
     others = seen if others is None else others
-    return np.einsum("ir,tr,jr->tij", seen, np.exp(-np.outer(taus, rates)), others, optimize=True)
+    return (seen * np.exp(-np.outer(taus, rates))[:, None]) @ others.T
 
 
 def modal_impedance(seen: np.ndarray, rates: np.ndarray, others: np.ndarray | None = None) -> np.ndarray:
     """(S, M, M) K/W at GRASP of ports (M, R), or between these and others."""
     others = seen if others is None else others
-    return np.einsum("ir,sr,jr->sij", seen, 1 / (GRASP[:, None] + rates), others, optimize=True)
+    return (seen * (1 / (GRASP[:, None] + rates))[:, None]) @ others.T

@@ -31,6 +31,7 @@ from .box import BoxSamples, Patches, box_kernel, box_samples
 from .contact import (
     Resolution,
     Tip,
+    Told,
     at_rates,
     box_side,
     compile_tip_states,
@@ -72,6 +73,7 @@ __all__ = [
     "Resolution",
     "Spot",
     "Tip",
+    "Told",
     "TouchedBox",
     "UnderTips",
     "at_rates",

@@ -319,18 +319,12 @@ def least_weight(
 
 
 def at_rates(
-    impedance: np.ndarray, level: Resolution, weight: np.ndarray, reported: np.ndarray | None = None
+    impedance: np.ndarray, level: Resolution, weight: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Rates (n,) 1/s, of the level's, and ports (n, N) sqrt(K/J) of a passive network near an impedance (S, N, N) K/W
-    at GRASP. weight: (S,) W/K of its errors. reported: (N,) bool, the ports that the network has; zeros for the others,
-    by which it has fewer states. None: all of them."""
-    if reported is None or reported.all():
-        told = fades(level.decay), np.ascontiguousarray(impedance), weight
-        return passive_states(*told, level.decay, level.least / weight[-1])
-    rates, few = at_rates(impedance[:, reported][:, :, reported], level, weight)
-    ports = np.zeros((len(rates), len(reported)))
-    ports[:, reported] = few
-    return rates, ports
+    at GRASP. weight: (S,) W/K of its errors."""
+    told = fades(level.decay), np.ascontiguousarray(impedance), weight
+    return passive_states(*told, level.decay, level.least / weight[-1])
 
 
 def _shielded(

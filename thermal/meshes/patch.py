@@ -11,7 +11,7 @@ from thermograsp.errors import MeshError
 
 from ..network import SHIFTS, patch_modes
 from ..plates import Geometry, SquarePatch, sample_bodies
-from ..surfaces import FACING, crossed_above, cutting
+from ..surfaces import FACING, crossed_above, cutting, twice_areas
 from .grid import MeshGrid, snapped
 from .place import ABOVE, CORNERS, PlacedPatch, within_cube
 
@@ -96,7 +96,7 @@ def patch_on_grid(
     a hollow that is as wide can be touched from within."""
     axes = np.stack((*patch.sides, patch.normal))
     half = patch.half_width
-    areas = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    areas = twice_areas(triangles)
     facing = areas @ patch.normal > FACING * np.linalg.norm(areas, axis=1)
     local = (triangles[facing] - patch.centre) @ axes.T
     near = np.all((local.min(axis=1) <= half) & (local.max(axis=1) >= -half), axis=1)

@@ -32,7 +32,7 @@ from ..network import (
     with_sensors,
 )
 from ..plates import Geometry
-from ..surfaces import Solid, SurfacePatch
+from ..surfaces import Solid, SurfacePatch, cross, twice_areas
 from .network import body_network, conducting_parts
 from .patch import learned_patterns
 from .place import place_patch
@@ -210,7 +210,7 @@ def surface_normal(body: Solid, place: np.ndarray) -> np.ndarray:
 def nearest_surface(triangles: np.ndarray, place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The point (3,) m of triangles (F, 3, 3) m that is nearest to a place (3,) m, and their normal (3,) there."""
     a = triangles[:, 0]
-    normals = np.cross(triangles[:, 1] - a, triangles[:, 2] - a)
+    normals = twice_areas(triangles)
     areas = np.linalg.norm(normals, axis=1)
     faces = areas > 0
     normals = normals[faces] / areas[faces, None]
@@ -222,7 +222,7 @@ def nearest_surface(triangles: np.ndarray, place: np.ndarray) -> tuple[np.ndarra
     for i in range(3):
         start, end = triangles[faces, i], triangles[faces, (i + 1) % 3]
         edge = end - start
-        inside &= np.einsum("fc,fc->f", np.cross(edge, foot - start), normals) >= 0
+        inside &= np.einsum("fc,fc->f", cross(edge, foot - start), normals) >= 0
         share = np.einsum("fc,fc->f", place - start, edge) / np.einsum("fc,fc->f", edge, edge)
         on_edge = start + np.clip(share, 0.0, 1.0)[:, None] * edge
         away = np.linalg.norm(place - on_edge, axis=1)

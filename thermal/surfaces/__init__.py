@@ -4,7 +4,7 @@ from .check import open_edges, wrongly_enclosed
 from .cut import Edges, clip, cut_mesh, cutting, enclosed, in_planes
 from .hollow import wetted_faces
 from .nesting import BENEATH, NEARLY_ALL, hosts, net_volumes, shares_within
-from .rays import FACING, crossed_above, crossings
+from .rays import FACING, cross, crossed_above, crossings, twice_areas
 from .solid import Solid, SolidPart, SurfacePatch, checked, solid, surface_patches
 
 __all__ = [
@@ -17,6 +17,7 @@ __all__ = [
     "SurfacePatch",
     "checked",
     "clip",
+    "cross",
     "crossed_above",
     "crossings",
     "cut_mesh",
@@ -29,6 +30,7 @@ __all__ = [
     "shares_within",
     "solid",
     "surface_patches",
+    "twice_areas",
     "wetted_faces",
     "wrongly_enclosed",
 ]

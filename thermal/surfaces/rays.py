@@ -12,6 +12,17 @@ from thermograsp.compiled import njit
 FACING = 0.2  # cosine of the angle to a direction, below which a face does not look that way
 
 
+def twice_areas(triangles: np.ndarray) -> np.ndarray:
+    """(F, 3) m2, normals of triangles (F, 3, 3) m, as long as twice their areas."""
+    return cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+
+
+def cross(first: np.ndarray, second: np.ndarray) -> np.ndarray:
+    """np.cross of vectors (F, 3), in a fifth of the time where they are few."""
+    (a, b, c), (u, v, w) = first.T, second.T
+    return np.stack((b * w - c * v, c * u - a * w, a * v - b * u), axis=1)
+
+
 def crossings(triangles: np.ndarray, origin: np.ndarray, direction: np.ndarray) -> np.ndarray:
     """Distances m along a line at which it leaves through faces that look its way (Moller & Trumbore, J. Graph. Tools
     2, 1997)."""
