@@ -10,6 +10,8 @@ from operator import mul
 
 import numpy as np
 
+from thermograsp.compiled import njit
+
 from ..meshes import ABOVE, PlacedPatch, place_patch
 from ..surfaces import FACING, SurfacePatch, twice_areas
 
@@ -140,21 +142,34 @@ class _Faces:
     """Triangles (F, 3, 3) m seen along the third axis."""
 
     def __init__(self, triangles: np.ndarray) -> None:
-        self._a, first, second = (
+        a, first, second = (
             triangles[:, 0],
             triangles[:, 1] - triangles[:, 0],
             triangles[:, 2] - triangles[:, 0],
         )
         across = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
-        self._u = np.stack((second[:, 1], -second[:, 0])) / across
-        self._v = np.stack((-first[:, 1], first[:, 0])) / across
-        self._rise = first[:, 2], second[:, 2]
+        u, v = (second[:, 1], -second[:, 0]), (-first[:, 1], first[:, 0])
+        shares = [each / across for each in (*u, *v)]
+        self._table = np.stack((*a.T, *shares, first[:, 2], second[:, 2]), axis=1)
 
     def heights(self, at: np.ndarray) -> np.ndarray:
-        x, y = at[0] - self._a[:, 0], at[1] - self._a[:, 1]
-        u, v = self._u[0] * x + self._u[1] * y, self._v[0] * x + self._v[1] * y
-        inside = (u >= -_EDGE) & (v >= -_EDGE) & (u + v <= 1 + _EDGE)
-        return self._a[inside, 2] + u[inside] * self._rise[0][inside] + v[inside] * self._rise[1][inside]
+        found = np.empty(len(self._table))
+        return found[: _heights(self._table, at[0], at[1], found)]
+
+
+@njit(cache=True, error_model="numpy", short_loops=True)
+def _heights(table, x, y, found):
+    """Writes down the heights at which triangles are met, by rows of a corner, how two sides' shares of the way to a
+    place rise along either axis, and how these sides rise. Returns how many there are."""
+    count = 0
+    for f in range(len(table)):
+        along, aside = x - table[f, 0], y - table[f, 1]
+        u = table[f, 3] * along + table[f, 4] * aside
+        v = table[f, 5] * along + table[f, 6] * aside
+        if u >= -_EDGE and v >= -_EDGE and u + v <= 1 + _EDGE:
+            found[count] = table[f, 2] + u * table[f, 7] + v * table[f, 8]
+            count += 1
+    return count
 
 
 def beneath(triangles: np.ndarray, patch: SurfacePatch, walls: np.ndarray | None = None) -> Beneath:

@@ -31,7 +31,7 @@ from ..meshes import (
     uniform_pattern,
 )
 from ..network import ThermalNetwork
-from ..surfaces import FACING, Solid, SurfacePatch, crossings, twice_areas
+from ..surfaces import FACING, Solid, SurfacePatch, crossings, depths, twice_areas
 from .beneath import Beneath
 from .box import bent_room, box_beneath
 from .place import is_touchable
@@ -150,13 +150,7 @@ def wall_below(body: Solid, patch: SurfacePatch) -> tuple[float, float]:
     local = (triangles - centre) @ np.stack((*sides, outward)).T
     across = (local.min(axis=1) <= half) & (local.max(axis=1) >= -half)
     near = triangles[across[:, :2].all(axis=1)]
-    thick = []
-    for at in half * _SAMPLED:
-        crossed = crossings(near, centre + at @ sides, outward)
-        if not len(crossed) or (face := crossed[np.abs(crossed).argmin()]) <= -half or face >= half:
-            continue
-        left = crossings(near, centre + at @ sides, -outward) + face
-        thick.append(min(left[left > 0], default=math.inf))
+    thick = depths(near, centre + half * _SAMPLED @ sides, outward, half)
     areas = twice_areas(triangles)
     facing = across.all(axis=1) & (areas @ outward > FACING * np.linalg.norm(areas, axis=1))
     over = (
@@ -165,7 +159,7 @@ def wall_below(body: Solid, patch: SurfacePatch) -> tuple[float, float]:
         & (local[..., 2].min(axis=1) <= 2 * half)
     )
     share = area_within(local[facing], local[over], half) / (2 * half) ** 2
-    return min(share, 1.0), float(np.median(thick)) if thick else math.inf
+    return min(share, 1.0), float(np.median(thick)) if len(thick) else math.inf
 
 
 def _triple(values: np.ndarray) -> _Triple:

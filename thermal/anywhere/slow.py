@@ -5,6 +5,7 @@ M: ports, R: modes, K: states, T: times, S: moments.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -52,6 +53,7 @@ def own_network(body: Solid, film: float, *, cache: bool = True) -> ThermalNetwo
     return slow_states(modes, np.zeros((0, len(modes.rates))), inside).network
 
 
+@lru_cache(maxsize=64)
 def state_count(modes: BodyModes) -> int:
     """How many modes are states. Where contents take the heat before it has gone a cell along, modes tell cells apart
     and no places, and the first alone is one."""

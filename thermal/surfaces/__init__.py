@@ -4,7 +4,7 @@ from .check import open_edges, wrongly_enclosed
 from .cut import Edges, clip, cut_mesh, cutting, enclosed, in_planes
 from .hollow import wetted_faces
 from .nesting import BENEATH, NEARLY_ALL, hosts, net_volumes, shares_within
-from .rays import FACING, cross, crossed_above, crossings, twice_areas
+from .rays import FACING, cross, crossed_above, crossings, depths, twice_areas
 from .solid import Solid, SolidPart, SurfacePatch, checked, solid, surface_patches
 
 __all__ = [
@@ -22,6 +22,7 @@ __all__ = [
     "crossings",
     "cut_mesh",
     "cutting",
+    "depths",
     "enclosed",
     "hosts",
     "in_planes",

@@ -31,6 +31,33 @@ def crossings(triangles: np.ndarray, origin: np.ndarray, direction: np.ndarray) 
     return found[: _crossings(np.ascontiguousarray(triangles, float), *line, found)]
 
 
+def depths(triangles: np.ndarray, places: np.ndarray, outward: np.ndarray, reach: float) -> np.ndarray:
+    """(m,) m from the surface that looks outward within reach of places (n, 3) m, of those that have any, down to the
+    next that looks the other way: inf where there is none."""
+    found = np.empty(len(places))
+    told = np.ascontiguousarray(triangles, float), np.ascontiguousarray(places), np.asarray(outward, float)
+    return found[: _depths(*told, reach, found)]
+
+
+@njit(cache=True, error_model="numpy", short_loops=True)
+def _depths(triangles, places, outward, reach, found):
+    """Writes them down, and returns how many there are."""
+    crossed, count = np.empty(len(triangles)), 0
+    for n in range(len(places)):
+        face = np.inf
+        for k in range(_crossings(triangles, places[n], outward, crossed)):
+            if abs(crossed[k]) < abs(face):
+                face = crossed[k]
+        if not abs(face) < reach:
+            continue
+        found[count] = np.inf
+        for k in range(_crossings(triangles, places[n], -outward, crossed)):
+            if 0 < crossed[k] + face < found[count]:
+                found[count] = crossed[k] + face
+        count += 1
+    return count
+
+
 @njit(cache=True, error_model="numpy", short_loops=True)
 def _crossings(triangles, origin, direction, found):
     """Writes them down, and returns how many there are."""
