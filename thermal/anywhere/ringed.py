@@ -70,8 +70,8 @@ def body_in_pads(
     it has gained; (n, P R) ports of even flows into rings of the pads around; and how many of its states, the first
     ones, are the body's own wherever it is touched. sides: (R,) m, the rings' outer sides, none without pads. whole:
     whether rings are told of a place, and of all its ports what fades sooner, or of the face's even one alone; None: of
-    all places. film: W/K to contents, of sensors without pads. Raises MeshError where a patch meets no surface, or the body is no solid in
-    one piece."""
+    all places. film: W/K to contents, of sensors without pads. Raises MeshError where a patch meets no surface, or the
+    body is no solid in one piece."""
     if not sides:
         alone = placed_network(body, patches, stack, film, whole=whole, cache=cache)
         return alone.network, np.zeros((len(alone.network.rates), 0)), alone.slow
@@ -197,8 +197,8 @@ def _between(areas: np.ndarray, squares: np.ndarray, nothing: np.ndarray) -> np.
 
 
 def _local(found: FaceImpedance, around: Mapping[int, _Squares], taus: np.ndarray) -> np.ndarray:
-    """(T, F + J, F + J) 1/m3, of unit material, between faces' ports and rings, by the boxes beneath the places. around:
-    by place, of those that have rings."""
+    """(T, F + J, F + J) 1/m3, of unit material, between faces' ports and rings, by the boxes beneath the places.
+    around: by place, of those that have rings."""
     faces, rings = len(found.told.columns), len(next(iter(around.values())).rings) if around else 0
     total, after = faces + len(around) * rings, {n: faces + k * rings for k, n in enumerate(around)}
     kernel, known = np.zeros((len(taus), total, total)), np.zeros((total, total))

@@ -318,9 +318,7 @@ def least_weight(
     return np.min(weights, axis=0)
 
 
-def at_rates(
-    impedance: np.ndarray, level: Resolution, weight: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def at_rates(impedance: np.ndarray, level: Resolution, weight: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Rates (n,) 1/s, of the level's, and ports (n, N) sqrt(K/J) of a passive network near an impedance (S, N, N) K/W
     at GRASP. weight: (S,) W/K of its errors."""
     told = fades(level.decay), np.ascontiguousarray(impedance), weight

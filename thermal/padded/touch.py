@@ -102,9 +102,7 @@ def _seen(
         np.stack(halves, axis=1).reshape(tips * each, 2),
     )
     even = [False, *[True] * RINGS] * tips
-    box = box_samples(
-        size, material.conductivity, material.volumetric_heat_capacity, film, nested, even=even
-    )
+    box = box_samples(size, material.conductivity, material.volumetric_heat_capacity, film, nested, even=even)
     early = before(material.conductivity / material.volumetric_heat_capacity)
     early /= material.volumetric_heat_capacity
     impedance, flows = box.impedance.copy(), count + RINGS

@@ -214,12 +214,13 @@ static void impedance(const Numbers* numbers, int object, const Network* network
   memcpy(kept + 1 + numbers->places * SLOT, rest, sizeof(double) * MOMENTS * wide * wide);
 }
 
-/* inside (K, W, W) positive semidefinite, whose sum with the columns (MOMENTS, K) is nearest to wanted (MOMENTS, W, W):
-thermal/numerics/passive_residues.py. Meanwhile the rates come last, (W, W, K). */
-static void residues(int rates, int wide, double* columns, const double* wanted, double* inside, double* room) {
+/* The eigenvectors (W, W, K), in rows of `turn`, and the values on the diagonal of `moved` (W, W, K), as far as they are
+above 0, of matrices whose sum with the columns (MOMENTS, K) is nearest to wanted (MOMENTS, W, W): positive semidefinite,
+thermal/numerics/passive_residues.py. room: (4, W, W, K). */
+static void residues(int rates, int wide, double* columns, const double* wanted, double* turn, double* moved, double* room) {
   int square = wide * wide;
   size_t whole = (size_t)rates * square;
-  double *seen = room, *dual = seen + whole, *turn = dual + whole, *half = turn + whole, *moved = half + whole;
+  double *seen = room, *dual = seen + whole, *half = dual + whole, *inside = half + whole;
   double size[rates], normal[rates * rates], ridged[rates * rates], solve[rates * rates], guess[rates * rates];
   for (int k = 0; k < rates; k++) {
     size[k] = 0;
@@ -236,7 +237,8 @@ static void residues(int rates, int wide, double* columns, const double* wanted,
   heat_inverse(rates, normal, solve);
   heat_inverse(rates, ridged, guess);
 #define AT(what, i, j) (what + ((size_t)(i) * wide + (j)) * rates)
-  memset(dual, 0, sizeof(double) * 2 * whole); /* turn too */
+  memset(dual, 0, sizeof(double) * whole);
+  memset(turn, 0, sizeof(double) * whole);
   mju_mulMatTMat(seen, wanted, columns, MOMENTS, square, rates);
   mju_mulMatMat(inside, seen, guess, square, rates, rates); /* symmetric, as solve is */
   for (int i = 0; i < wide; i++)
@@ -252,7 +254,8 @@ static void residues(int rates, int wide, double* columns, const double* wanted,
       }
     }
     /* seen from the last step's eigenvectors it is nearly diagonal */
-    memset(half, 0, sizeof(double) * 2 * whole); /* moved too */
+    memset(half, 0, sizeof(double) * whole);
+    memset(moved, 0, sizeof(double) * whole);
     for (int m = 0; m < wide; m++)
       for (int i = 0; i < wide; i++)
         for (int r = 0; r < wide; r++)
@@ -282,11 +285,8 @@ static void residues(int rates, int wide, double* columns, const double* wanted,
     }
     if (moving < SETTLED) break;
   }
-  memcpy(moved, inside, sizeof(double) * whole);
-  for (int k = 0; k < rates; k++)
-    for (int i = 0; i < wide; i++)
-      for (int j = 0; j < wide; j++)
-        inside[((size_t)k * wide + i) * wide + j] = (j > i ? AT(moved, j, i) : AT(moved, i, j))[k] / size[k];
+  for (int m = 0; m < wide; m++)
+    for (int k = 0; k < rates; k++) AT(moved, m, m)[k] /= size[k];
 #undef AT
 }
 
@@ -318,7 +318,7 @@ void heat_network(const Numbers* numbers, int object, Network* network, double* 
   int count = network->count, patterns = numbers->patterns, wide = count * patterns, rates = numbers->rates, used[wide + 1];
   size_t square = (size_t)wide * wide;
   double *port = room + 3 * (size_t)count * (sizeof(Along) / sizeof(double) + 1), *rest = port + wide;
-  double *weight = rest + MOMENTS * square, *columns = weight + MOMENTS, *found = columns + MOMENTS * rates;
+  double *weight = rest + MOMENTS * square, *columns = weight + MOMENTS, *turn = columns + MOMENTS * rates;
   network->n = 1;
   network->rates[0] = box[LOSS];
   if (count) {
@@ -340,20 +340,17 @@ void heat_network(const Numbers* numbers, int object, Network* network, double* 
         for (int b = 0; b < few; b++)
           rest[((size_t)s * few + a) * few + b] = rest[((size_t)s * wide + used[a]) * wide + used[b]] * weight[s];
     square = (size_t)few * few;
-    residues(rates, few, columns, rest, found, found + rates * square);
-    double *turn = found + rates * square, least = numbers->least / weight[MOMENTS - 1];
+    double *values = turn + rates * square, least = numbers->least / weight[MOMENTS - 1];
+    residues(rates, few, columns, rest, turn, values, values + rates * square);
     memset(network->ports, 0, sizeof(double) * wide * numbers->states);
     for (int j = 0; j < few; j++) network->ports[(size_t)used[j] * numbers->states] = port[used[j]];
     for (int k = 0; k < rates; k++) {
-      double* residue = found + k * square;
-      for (int i = 0; i < few * few; i++) turn[i] = i % (few + 1) == 0;
-      heat_diagonalise(few, 1, residue, turn);
       for (int m = 0; m < few; m++) {
-        double value = residue[m * few + m], left = value - pow(least * numbers->decay[k], 2) / value;
+        double value = values[((size_t)m * few + m) * rates + k], left = value - pow(least * numbers->decay[k], 2) / value;
         if (!(value > 0 && left > 0)) continue;
         network->rates[network->n] = numbers->decay[k] + IN_AIR * box[LOSS] / (1 + numbers->decay[k] / box[CROSSING]);
         for (int j = 0; j < few; j++)
-          network->ports[(size_t)used[j] * numbers->states + network->n] = turn[m * few + j] * sqrt(left);
+          network->ports[(size_t)used[j] * numbers->states + network->n] = turn[((size_t)m * few + j) * rates + k] * sqrt(left);
         network->n++;
       }
     }
