@@ -142,6 +142,28 @@ def _take_product(typingctx, out, i, a, j, b, k):
     return types.void(out, i, a, j, b, k), code
 
 
+def _rotate(typingctx, a, i, ahead, j, other_ahead, cosine, k, sine, m, count):
+    """Of `count` fours of a from i on, each so many numbers ahead of the last, and as many from j on: the first less the
+    second, by the cosines at k and the sines at m, and the first by the sines with the second by the cosines."""
+
+    def code(context, builder, signature, values):
+        first = _place(context, builder, signature, values, 0)
+        second = _place(context, builder, signature, (values[0], *values[3:]), 0)
+        by = [_load(builder, _place(context, builder, signature, values, n)) for n in (5, 7)]
+        with cgutils.for_range(builder, values[9]) as loop:
+            places = [
+                _ahead(builder, place, builder.mul(loop.index, step))
+                for place, step in ((first, values[2]), (second, values[4]))
+            ]
+            one, other = (_load(builder, place) for place in places)
+            (real, imag), (less, more) = ([builder.fmul(each, part) for part in by] for each in (one, other))
+            _store(builder, builder.fsub(real, more, flags=_ONCE), places[0])
+            _store(builder, builder.fadd(imag, less, flags=_ONCE), places[1])
+        return context.get_dummy_value()
+
+    return types.void(a, i, ahead, j, other_ahead, cosine, k, sine, m, count), code
+
+
 def _invert(typingctx, out, i):
     """Complex lanes: out at i is its inverse."""
 
@@ -235,6 +257,7 @@ take_products: Any = intrinsic(_take_products)
 dot: Any = intrinsic(_dot)
 put_product: Any = intrinsic(_put_product)
 take_product: Any = intrinsic(_take_product)
+rotate: Any = intrinsic(_rotate)
 invert: Any = intrinsic(_invert)
 
 

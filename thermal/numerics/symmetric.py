@@ -10,6 +10,7 @@ import math
 import numpy as np
 
 from thermograsp.compiled import njit
+from thermograsp.lanes import LANES, rotate
 
 from .fastmath import FAST
 
@@ -17,6 +18,7 @@ _ROUND_OFF = 1e-24
 """Of squares off the diagonal beside those on it, in every step. With more left on the way, round-off decided how much:
 of 1e-15 in what is wanted came 9e-6 in what is found."""
 _TINY = 1e-300  # beside a zero
+_SWEEPS = 30
 _UNSEEN = 1e-12  # of the largest eigenvalue, up to which one counts as none
 
 
@@ -60,11 +62,13 @@ def solve_factored(lower, column):
 def solve_singular(matrix, column):
     """Turns a column (N,) into the shortest solution of a symmetric matrix's equations that is nowhere negative."""
     count = len(column)
-    turned, turn, room = matrix.reshape(count, count, 1), np.zeros((count, count, 1)), np.empty((4, 1))
+    turned, turn = np.zeros((count, count, LANES)), np.zeros((count, count, LANES))
     along = np.zeros(count)
     for i in range(count):
         turn[i, i, 0] = 1.0
-    turn_diagonal(turned, turn, room)
+        for j in range(count):
+            turned[i, j, 0] = matrix[i, j]
+    turn_diagonal(turned, turn, np.empty((4, LANES)), _SWEEPS)
     largest = 0.0
     for i in range(count):
         largest = max(largest, turned[i, i, 0])
@@ -80,12 +84,13 @@ def solve_singular(matrix, column):
 
 
 @njit(cache=True, inner=True, borrows=True, error_model="numpy")
-def turn_diagonal(matrix, turn, room):
+def turn_diagonal(matrix, turn, room, most):
     """Diagonalises symmetric matrices (N, N, K), of which it reads and writes the lower half, by Jacobi's rotations,
-    which it adds to turn's rows. room: (4, K)."""
+    which it adds to turn's rows, in so many sweeps at most. K: whole lanes. room: (4, K)."""
     ports, rates = matrix.shape[1], matrix.shape[2]
     cosine, sine, off, on = room[0], room[1], room[2], room[3]
-    for _ in range(30):
+    row = ports * rates
+    for _ in range(most):
         for k in range(rates):
             off[k] = on[k] = 0.0
         for i in range(ports):
@@ -108,14 +113,15 @@ def turn_diagonal(matrix, turn, room):
                 if small:
                     continue
                 _angle(matrix[p, p], matrix[q, q], matrix[q, p], cosine, sine)
-                for m in range(p):
-                    _rotate(matrix, p, m, q, m, cosine, sine)
-                for m in range(p + 1, q):
-                    _rotate(matrix, m, p, q, m, cosine, sine)
-                for m in range(q + 1, ports):
-                    _rotate(matrix, m, p, m, q, cosine, sine)
-                for m in range(ports):
-                    _rotate(turn, p, m, q, m, cosine, sine)
+                between, behind = q - p - 1, ports - q - 1
+                for k in range(0, rates, LANES):
+                    first, last = p * row + k, q * row + k
+                    at, beside = first + row + p * rates, last + (p + 1) * rates
+                    rotate(matrix, first, rates, last, rates, cosine, k, sine, k, p)
+                    rotate(matrix, at, row, beside, rates, cosine, k, sine, k, between)
+                    below = last + row
+                    rotate(matrix, below + p * rates, row, below + q * rates, row, cosine, k, sine, k, behind)
+                    rotate(turn, first, rates, last, rates, cosine, k, sine, k, ports)
 
 
 @njit(cache=True, inner=True, borrows=True, error_model="numpy")
@@ -131,9 +137,3 @@ def _angle(first, second, between, cosine, sine):
         second[k] += tangent * between[k]
         between[k] = 0.0
 
-
-@njit(cache=True, inner=True, borrows=True, error_model="numpy", forceinline=True)
-def _rotate(matrix, i, j, m, n, cosine, sine):
-    for k in range(len(cosine)):
-        a, b = matrix[i, j, k], matrix[m, n, k]
-        matrix[i, j, k], matrix[m, n, k] = cosine[k] * a - sine[k] * b, sine[k] * a + cosine[k] * b
