@@ -19,7 +19,6 @@ _PENALTY = 5e-3  # of leaving the cone, beside columns of unit length
 _RIDGE = 1e-4  # of the first guess, without constraint
 _FREE_RIDGE = 1e-6  # of residues without constraint
 _RELAXED = 1.6
-_SWEEPS = 2  # in a step: it begins with the last one's eigenvectors, and need not end at its own
 
 
 def passive_residues(columns: np.ndarray, wanted: np.ndarray, weight: np.ndarray) -> np.ndarray:
@@ -215,7 +214,7 @@ def _in_cone(solve, seen, inside):
         for i in range(ports):
             for j in range(i + 1):
                 _put_products(moved, i * row + j * rates, turn, i * row, half, j * row, rates, rates, ports)
-        turn_diagonal(moved, turn, room, _SWEEPS)
+        turn_diagonal(moved, turn, room)
         for m in range(ports):
             for i in range(ports):
                 for k in range(rates):

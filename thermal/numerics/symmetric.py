@@ -18,7 +18,6 @@ _ROUND_OFF = 1e-24
 """Of squares off the diagonal beside those on it, in every step. With more left on the way, round-off decided how much:
 of 1e-15 in what is wanted came 9e-6 in what is found."""
 _TINY = 1e-300  # beside a zero
-_SWEEPS = 30
 _UNSEEN = 1e-12  # of the largest eigenvalue, up to which one counts as none
 
 
@@ -68,7 +67,7 @@ def solve_singular(matrix, column):
         turn[i, i, 0] = 1.0
         for j in range(count):
             turned[i, j, 0] = matrix[i, j]
-    turn_diagonal(turned, turn, np.empty((4, LANES)), _SWEEPS)
+    turn_diagonal(turned, turn, np.empty((4, LANES)))
     largest = 0.0
     for i in range(count):
         largest = max(largest, turned[i, i, 0])
@@ -84,13 +83,13 @@ def solve_singular(matrix, column):
 
 
 @njit(cache=True, inner=True, borrows=True, error_model="numpy")
-def turn_diagonal(matrix, turn, room, most):
+def turn_diagonal(matrix, turn, room):
     """Diagonalises symmetric matrices (N, N, K), of which it reads and writes the lower half, by Jacobi's rotations,
-    which it adds to turn's rows, in so many sweeps at most. K: whole lanes. room: (4, K)."""
+    which it adds to turn's rows. K: whole lanes. room: (4, K)."""
     ports, rates = matrix.shape[1], matrix.shape[2]
     cosine, sine, off, on = room[0], room[1], room[2], room[3]
     row = ports * rates
-    for _ in range(most):
+    for _ in range(30):
         for k in range(rates):
             off[k] = on[k] = 0.0
         for i in range(ports):
@@ -136,4 +135,3 @@ def _angle(first, second, between, cosine, sine):
         first[k] -= tangent * between[k]
         second[k] += tangent * between[k]
         between[k] = 0.0
-

@@ -29,12 +29,12 @@ static void angle(int count, double* first, double* second, double* between, dou
   }
 }
 
-/* Turns `count` symmetric matrices (N, N, count) at once towards their eigenvalues, and adds the rotations to the rows of
-turn; of the matrices the lower halves count. As thermal/numerics/symmetric.py does, in so many sweeps at most. */
-void heat_diagonalise(int n, int count, double* matrix, double* turn, int most) {
+/* Turns `count` symmetric matrices (N, N, count) at once into their eigenvalues, and adds the rotations to the rows of
+turn; of the matrices the lower halves count. As thermal/numerics/passive_residues.py does. */
+void heat_diagonalise(int n, int count, double* matrix, double* turn) {
   double off[count], on[count], cosine[count], sine[count];
 #define AT(what, i, j) (what + ((size_t)(i) * n + (j)) * count)
-  for (int sweep = 0; sweep < most; sweep++) {
+  for (int sweep = 0; sweep < 30; sweep++) {
     memset(off, 0, sizeof off);
     memset(on, 0, sizeof on);
     for (int i = 0; i < n; i++) {

@@ -14,7 +14,6 @@ enum { MODES = 24, STEPS = 12 };
 #define PENALTY 5e-3  /* of leaving the cone, beside columns of unit length */
 #define RIDGE 1e-4    /* of the first guess, without constraint */
 #define RELAXED 1.6
-#define SWEEPS 2      /* in a step: it begins with the last one's eigenvectors, and need not end at its own */
 #define SETTLED 4e-4  /* change of any residue in a step from which on it is the last */
 
 /* A patch along one axis: order 1 tangential, with the patterns' nodes; order 0 a point. waves: its overlaps with eigenfunctions. */
@@ -265,7 +264,7 @@ static void residues(int rates, int wide, double* columns, const double* wanted,
       for (int j = 0; j <= i; j++)
         for (int m = 0; m < wide; m++)
           for (int k = 0; k < rates; k++) AT(moved, i, j)[k] += AT(turn, i, m)[k] * AT(half, j, m)[k];
-    heat_diagonalise(wide, rates, moved, turn, SWEEPS);
+    heat_diagonalise(wide, rates, moved, turn);
     for (int m = 0; m < wide; m++)
       for (int i = 0; i < wide; i++)
         for (int k = 0; k < rates; k++) AT(half, m, i)[k] = greater(AT(moved, m, m)[k], 0) * AT(turn, m, i)[k];

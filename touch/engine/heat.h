@@ -189,7 +189,7 @@ int heat_forgotten(const Numbers* numbers, const Network* network, const double*
                    double* room);
 size_t heat_carry_room(const Numbers* numbers);
 
-void heat_diagonalise(int n, int count, double* matrix, double* turn, int most);
+void heat_diagonalise(int n, int count, double* matrix, double* turn);
 void heat_inverse(int n, double* matrix, double* inverse);
 
 #endif

@@ -13,7 +13,8 @@ which places are remembered, and how an object's field survives a change of them
 #define TIE 1e-6      /* round-off does not decide where a pad is in the middle, between faces or points of the grid */
 #define ANOTHER 0.1   /* by which another face of the box must look more at the pad than the one in use */
 #define SOON 0.5      /* s, from when on what is lost with a place counts */
-#define UNFELT 1e-3   /* K, that what is lost may be felt as at a place that is forgotten without need */
+#define UNFELT 1e-3   /* K, that what is lost of a place that is forgotten without need may be felt as */
+#define AT_ONCE 0.01  /* s, from when on */
 #define RIDGE 1e-4    /* of a port's mean square */
 #define ALIKE 1e-6    /* relative: round-off does not decide between places of which as much would be lost */
 
@@ -162,12 +163,13 @@ int heat_forgotten(const Numbers* numbers, const Network* network, const double*
     if (!gone[used[a] / patterns]) alive[left++] = a;
   double *gram = room, *remaining = gram + few * few, *inverse = remaining + left * left, *block = inverse + left * left;
   double *turned = block + patterns * patterns, *hears = turned + patterns * patterns, *flows = hears + few;
-  double lost[network->count + 1], shown[network->count + 1], least = INFINITY;
+  double lost[network->count + 1], felt[network->count + 1], shown[network->count + 1], least = INFINITY;
   memset(lost, 0, sizeof lost);
+  memset(felt, 0, sizeof felt);
   memset(shown, 0, sizeof shown);
   for (int first = 1, last; first < network->n; first = last) {
     last = next_rate(network, first);
-    double ridge = 0, share = exp(-2 * network->rates[first] * SOON);
+    double ridge = 0, share = exp(-2 * network->rates[first] * SOON), soon = exp(-2 * network->rates[first] * AT_ONCE);
     for (int a = 0; a < few; a++) {
       const double* port = network->ports + (size_t)used[a] * numbers->states;
       hears[a] = 0;
@@ -178,7 +180,7 @@ int heat_forgotten(const Numbers* numbers, const Network* network, const double*
           gram[a * few + b] += port[i] * network->ports[(size_t)used[b] * numbers->states + i];
       }
       ridge += RIDGE * gram[a * few + a] / few;
-      if (used[a] % patterns == 0) shown[used[a] / patterns] += share * gram[a * few + a];
+      if (used[a] % patterns == 0) shown[used[a] / patterns] += soon * gram[a * few + a];
     }
     for (int a = 0; a < left; a++)
       for (int b = 0; b < left; b++) remaining[a * left + b] = gram[alive[a] * few + alive[b]] + (a == b ? ridge : 0);
@@ -194,7 +196,10 @@ int heat_forgotten(const Numbers* numbers, const Network* network, const double*
       int size = end - a;
       for (int i = 0; i < size * size; i++) block[i] = inverse[(a + i / size) * left + a + i % size];
       heat_inverse(size, block, turned);
-      for (int i = 0; i < size * size; i++) lost[n] += share * flows[a + i / size] * turned[i] * flows[a + i % size];
+      double each = 0;
+      for (int i = 0; i < size * size; i++) each += flows[a + i / size] * turned[i] * flows[a + i % size];
+      lost[n] += share * each;
+      felt[n] += soon * each;
     }
   }
   for (int n = 0; n < network->count; n++)
@@ -204,7 +209,7 @@ int heat_forgotten(const Numbers* numbers, const Network* network, const double*
     if (idle[n] && !gone[n] && !(lost[n] > least * (1 + ALIKE))) first = n;
   for (int n = network->count - 1; n >= 0 && !isfinite(least); n--)
     if (idle[n] && !gone[n]) first = n;
-  return first >= 0 && !need && !(lost[first] * shown[first] <= UNFELT * UNFELT) ? -1 : first;
+  return first >= 0 && !need && !(felt[first] * shown[first] <= UNFELT * UNFELT) ? -1 : first;
 }
 
 /* How many networks this process has made, by which tests see that they are kept. */

@@ -15,7 +15,10 @@ from .by_rate import by_rate
 MOST_PLACES = 12
 """Of an object that are remembered besides those in use."""
 _SOON = 0.5  # s, from when on what is lost counts
-_UNFELT = 1e-3  # K, that what is lost may be felt as at a place that is forgotten without need
+_UNFELT, _AT_ONCE = (
+    1e-3,
+    0.01,
+)  # K, that what is lost of a place that is forgotten without need may be felt as; from s on
 _RIDGE = 1e-4  # of a port's mean square
 _ALIKE = 1e-6  # relative: round-off does not decide between places of which as much would be lost
 
@@ -30,15 +33,17 @@ def forgotten(
     bring about: by each rate, what is lost is u^T S u, where u are the flows that would make the states and S is what
     is stored by a unit flow that the other places see nothing of, the inverse of the inverse Gram matrix' block. Of
     places as good as each other the first one goes. No state is felt as more than its root times the port's, so that
-    what is lost is felt at the place, twice _SOON later, as the root of its product with the port's square at most."""
+    what is lost is felt at the place, twice _AT_ONCE later, as the root of its product with the port's square at
+    most."""
     if not idle:
         return []
     ports = [n * patterns + m for n, whole in enumerate(field.whole) for m in range(patterns if whole else 1)]
     owner = np.array(ports) // patterns
     rates, _, seen = known = by_rate(field, field.ports[:, ports])
     gram, hears = seen @ seen.swapaxes(1, 2), np.einsum("kpc,kc->kp", seen, known.of(states))
-    left, diagonal = np.exp(-2 * rates * _SOON), np.arange(len(ports))
-    shown = left @ gram[:, diagonal, diagonal]
+    left, soon = (np.exp(-2 * rates * time) for time in (_SOON, _AT_ONCE))
+    diagonal = np.arange(len(ports))
+    shown = soon @ gram[:, diagonal, diagonal]
     ridge = _RIDGE * np.trace(gram, axis1=1, axis2=2) / len(ports)
     gram[:, diagonal, diagonal] += ridge[:, None]
     gone: list[int] = []
@@ -47,17 +52,18 @@ def forgotten(
         inverse = np.linalg.inv(gram[:, alive[:, None], alive])
         flows = np.einsum("kij,kj->ki", inverse, hears[:, alive])
         # of a place of one port
-        by_port = left @ (flows**2 / inverse[:, diagonal[: len(alive)], diagonal[: len(alive)]])
+        by_port = flows**2 / inverse[:, diagonal[: len(alive)], diagonal[: len(alive)]]
         lost = {}
         for n in (n for n in idle if n not in gone):
             members = np.flatnonzero(owner[alive] == n)
-            lost[n] = float(by_port[members[0]])
+            lost[n] = by_port[:, members[0]]
             if len(members) > 1:
                 block = np.linalg.solve(inverse[:, members[:, None], members], flows[:, members, None])
-                lost[n] = float(left @ (flows[:, members] * block[..., 0]).sum(axis=1))
-        least = min(lost.values()) * (1 + _ALIKE)
-        first = next(n for n, each in lost.items() if each <= least)
-        if len(gone) >= count and lost[first] * shown[np.argmax(owner == first)] > _UNFELT**2:
+                lost[n] = (flows[:, members] * block[..., 0]).sum(axis=1)
+        late = {n: float(left @ each) for n, each in lost.items()}
+        least = min(late.values()) * (1 + _ALIKE)
+        first = next(n for n, each in late.items() if each <= least)
+        if len(gone) >= count and soon @ lost[first] * shown[np.argmax(owner == first)] > _UNFELT**2:
             break
         gone.append(first)
     return gone
