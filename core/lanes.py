@@ -143,8 +143,8 @@ def _take_product(typingctx, out, i, a, j, b, k):
 
 
 def _rotate(typingctx, a, i, ahead, j, other_ahead, cosine, k, sine, m, count):
-    """Of `count` fours of a from i on, each so many numbers ahead of the last, and as many from j on: the first less the
-    second, by the cosines at k and the sines at m, and the first by the sines with the second by the cosines."""
+    """Of `count` fours of a from i on, each so many numbers ahead of the last, and as many from j on: the first by the
+    cosines at k less the second by the sines at m, and the first by the sines with the second by the cosines."""
 
     def code(context, builder, signature, values):
         first = _place(context, builder, signature, values, 0)
