@@ -37,18 +37,23 @@ def carried_states(before: BodyField, after: BodyField, patterns: int, states: n
         wanted = np.zeros(sees.seen.shape[:2])
         _, was, now = np.intersect1d(saw.rates, sees.rates, return_indices=True)
         wanted[now] = np.einsum("kpc,kc->kp", saw.seen[was], saw.of(states)[was])
-        gram = sees.seen @ sees.seen.swapaxes(1, 2)
-        square = gram @ gram
-        port, trace = np.arange(gram.shape[1]), np.trace(square, axis1=1, axis2=2)
-        square[:, port, port] += np.where(trace > 0, _HARDLY**4 * trace, 1.0)[:, None]
-        with _BLAS.limit(limits=1, user_api="blas"):  # or the number of threads would decide last bits
-            flows = np.linalg.solve(square, gram @ wanted[..., None])[..., 0]
         there = sees.states >= 0
-        found[sees.states[there]] = np.einsum("kpc,kp->kc", sees.seen, flows)[there]
+        found[sees.states[there]] = _nearest(sees.seen, wanted)[there]
     stored, now = float(np.linalg.norm(states[1:])), float(np.linalg.norm(found[1:]))
     if now > _GROWTH * stored:
         found[1:] *= _GROWTH * stored / now
     return found
+
+
+def _nearest(seen: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """(K, C) states of which ports, seen (K, P, C), tell what is wanted (K, P)."""
+    with _BLAS.limit(limits=1, user_api="blas"):  # or the number of threads would decide last bits
+        gram = seen @ seen.swapaxes(1, 2)
+        square = gram @ gram
+        port, trace = np.arange(gram.shape[1]), np.trace(square, axis1=1, axis2=2)
+        square[:, port, port] += np.where(trace > 0, _HARDLY**4 * trace, 1.0)[:, None]
+        flows = np.linalg.solve(square, gram @ wanted[..., None])[..., 0]
+    return np.einsum("kpc,kp->kc", seen, flows)
 
 
 def _common(
