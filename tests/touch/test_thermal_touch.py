@@ -125,6 +125,12 @@ def test_the_scene_may_say_itself_what_its_objects_are() -> None:
     model, _ = hand.hand(custom='<text name="thermograsp:can" data="aluminium warm"/>')
     with pytest.raises(InvalidValueError, match="aluminium 5.0"):
         ThermalTouch(model, fingertips=PADS)
+    model, _ = hand.hand(custom='<text name="thermograsp:can" data="aluminium shape=tin"/>')
+    with pytest.raises(UnknownNameError, match="tin"):
+        ThermalTouch(model, fingertips=PADS)
+
+
+SIDES, OF_PARTS = ("left", "right"), (("wall", None), ("toy", "seen"))
 
 
 def test_what_the_scene_says_is_renamed_as_its_bodies_are_when_it_is_attached() -> None:
@@ -133,15 +139,23 @@ def test_what_the_scene_says_is_renamed_as_its_bodies_are_when_it_is_attached() 
     whole = mujoco.MjSpec()
     for side in ("left_", "right_"):
         part = mujoco.MjSpec.from_string(
-            '<mujoco><custom><text name="thermograsp:wall" data="glass 5"/></custom><worldbody><body name="cup">'
+            '<mujoco><custom><text name="thermograsp:wall" data="glass 5"/>'
+            '<text name="thermograsp:toy" data="wood 30 shape=seen"/></custom><worldbody>'
+            '<body name="toy" pos=".2 0 0">'
+            '<geom name="seen" type="box" size=".01 .01 .02" contype="0" conaffinity="0"/>'
+            '<geom type="box" size=".01 .01 .01" pos="0 0 .01"/><geom type="box" size=".01 .01 .01" pos="0 0 -.01"/>'
+            '</body><body name="cup">'
             '<geom name="tip" type="box" size=".01 .01 .01" pos="0 0 1"/>'
             '<geom name="wall" type="box" size=".02 .02 .02"/>'
             "</body></worldbody></mujoco>"
         )
         whole.attach(part, prefix=side, frame=whole.worldbody.add_frame())
     touch = ThermalTouch(whole.compile(), fingertips={"tip": Fingertip("left_tip")})
-    assert touch.objects == ("left_wall", "right_wall")
-    assert touch.reading.object_temperature == {"left_wall": 5.0, "right_wall": 5.0}
+    assert [
+        touch.reading.object_temperature[f"{side}_{name}"] for name in ("wall", "toy") for side in SIDES
+    ] == [*(5.0, 5.0, 30.0, 30.0)]
+    shapes = {shape.name: shape.shape_name for shape in touch._shapes}
+    assert shapes == {f"{side}_{name}": seen and f"{side}_seen" for name, seen in OF_PARTS for side in SIDES}
 
 
 def test_a_touch_with_the_back_of_a_finger_is_none() -> None:

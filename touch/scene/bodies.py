@@ -24,6 +24,8 @@ from .names import collides, find, geom_label, geoms_of
 
 PREFIX = "thermograsp:"
 """Of the names of an MJCF's custom texts that tell an object's material and temperature."""
+SHAPE = "shape="
+"""Before the name of a geom that tells the object's shape, at such a text's end."""
 
 _CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
 _SAME = 0.05  # of the least side, by which boxes of geoms in one place may differ
@@ -258,8 +260,9 @@ def _thermal_body(name: str, described: object) -> ThermalBody:
 
 
 def described_in_model(model: mujoco.MjModel) -> dict[str, ThermalBody]:
-    """The objects that the MJCF itself describes: custom texts "thermograsp:NAME" of a material and, behind it, °C.
-    Where MjSpec.attach has renamed them with the rest, "PREFIXthermograsp:NAME", they are of PREFIXNAME."""
+    """The objects that the MJCF itself describes: custom texts "thermograsp:NAME" of a material and, behind it, °C and
+    "shape=GEOM". Where MjSpec.attach has renamed them with the rest, "PREFIXthermograsp:NAME", they are of PREFIXNAME
+    and PREFIXGEOM."""
     found = {}
     for number in range(model.ntext):
         name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_TEXT, number) or ""
@@ -268,16 +271,17 @@ def described_in_model(model: mujoco.MjModel) -> dict[str, ThermalBody]:
             continue
         first, count = int(model.text_adr[number]), int(model.text_size[number])
         text = bytes(model.text_data)[first : first + count].split(b"\0")[0].decode()
-        words = text.split()
+        words, _, shape = (part.strip() for part in text.partition(SHAPE))
         try:
-            made_of, *rest = words
+            made_of, *rest = words.split()
             (degrees,) = map(float, rest) if rest else (None,)
         except ValueError:
             raise InvalidValueError(
-                f'<text name="{name}" data="{text}"/>: write a material and, if it is not the air\'s, a temperature in '
-                '°C, such as "aluminium 5.0"'
+                f'<text name="{name}" data="{text}"/>: write a material, a temperature in °C if it is not the air\'s, '
+                'and last the geom that is shaped as the whole if there is one, such as "aluminium 5.0" or "ceramic '
+                f'60 {SHAPE}mug_visual"'
             ) from None
-        found[attached + label] = ThermalBody(made_of, degrees)
+        found[attached + label] = ThermalBody(made_of, degrees, shape=attached + shape if shape else None)
     return found
 
 
