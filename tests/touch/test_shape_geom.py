@@ -3,6 +3,8 @@
 # mujoco ships no type stubs for its compiled names
 # pyright: reportAttributeAccessIssue=false
 
+import warnings
+
 import mujoco
 import numpy as np
 import pytest
@@ -186,3 +188,25 @@ def test_a_shape_stays_in_all_worlds() -> None:
 def test_a_geom_that_is_only_seen_is_told_how_to_be_felt() -> None:
     with pytest.warns(RuntimeWarning, match="with this one as the ThermalBody's shape"):
         ThermalTouch(scene(slabs(2) + WHOLE).compile(), fingertips=TIP, objects={"whole": "glass"})
+
+
+@pytest.mark.parametrize(
+    ("seen", "named"),
+    [
+        (WHOLE, True),
+        (WHOLE.replace('name="whole" ', ""), False),
+        (WHOLE.replace(".02 .02 .02", ".02 .02 .03"), False),
+        (WHOLE.replace(SEEN, ""), False),
+    ],
+)
+def test_a_geom_that_is_seen_and_as_large_as_all_pieces_is_named(seen: str, named: bool) -> None:
+    model = scene(slabs(8) + seen).compile()
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        ThermalTouch(model, fingertips=TIP, objects=of("glass", None))
+    told = [str(one.message) for one in said if "shape='whole'" in str(one.message)]
+    assert len(told) == named and all("'thing' collides as 8 geoms" in one for one in told)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        if named:
+            ThermalTouch(model, fingertips=TIP, objects=of("glass"))

@@ -29,6 +29,7 @@ SHAPE = "shape="
 
 _CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
 _SAME = 0.05  # of the least side, by which boxes of geoms in one place may differ
+_AS_LARGE = 0.1  # of a side, by which the end of an object that is seen may lie from that of its pieces
 _ROUND = (math.pi / 6) ** (1 / 3)  # side of the cube of a sphere's volume, of its diameter
 _DISC = math.sqrt(math.pi) / 2  # side of the square of a disc's area, of its diameter
 
@@ -175,12 +176,35 @@ def bodies(model: mujoco.MjModel, objects: Objects | None, ambient: float) -> tu
                     RuntimeWarning,
                     stacklevel=3,
                 )
+        if len(shape.geoms) > 1 and (whole := _seen_whole(model, shape)):
+            warnings.warn(
+                f"object {shape.name!r} collides as {len(shape.geoms)} geoms, each of which is felt by itself, so that "
+                "pads that lean on several or are round may be off by kelvins where they meet. Geom "
+                f"{whole!r} has the size of them all: if it is shaped as the object is, give ThermalBody(material, "
+                f"shape={whole!r}), on which whatever presses them is felt then",
+                RuntimeWarning,
+                stacklevel=3,
+            )
         for geom in shape.touched:
             if owner.setdefault(geom, shape.name) != shape.name:
                 raise InvalidValueError(
                     f"objects {owner[geom]!r} and {shape.name!r} share geom {geom_label(model, geom)}: name it once"
                 )
     return tuple(found)
+
+
+def _seen_whole(model: mujoco.MjModel, shape: BodyShape) -> str:
+    """The name of a geom of the object's body that is only to be seen and as large as all geoms that are felt; empty
+    where there is none."""
+    felt = np.concatenate([_corners(model, geom) for geom in shape.geoms])
+    low, high = felt.min(axis=0), felt.max(axis=0)
+    first, count = int(model.body_geomadr[shape.body]), int(model.body_geomnum[shape.body])
+    for geom in range(first, first + count):
+        corners, name = _corners(model, geom), model.geom(geom).name
+        off = np.abs([corners.min(axis=0) - low, corners.max(axis=0) - high])
+        if name and not collides(model, geom) and np.all(off < _AS_LARGE * (high - low)):
+            return name
+    return ""
 
 
 def _in_one_place(model: mujoco.MjModel, *geoms: int) -> bool:
