@@ -46,6 +46,24 @@ def test_a_block_is_the_box(name: str, thickness: float) -> None:
     assert np.abs((found - expected) / most).max() < 1e-2
 
 
+@pytest.mark.parametrize("sides", [SIDES, ()])
+def test_a_place_of_which_the_even_flow_is_told_is_as_any_other(sides: tuple[float, ...]) -> None:
+    """Beside one that is told wholly: the even flows into faces, and those into its rings."""
+    made, size = material("glass"), (0.01, 0.04, 0.04)
+    body = block(size, made)
+    patches = [SurfacePatch((way * 0.005, 0.0, 0.004), (way, 0.0, 0.0), 81e-6) for way in (-1.0, 1.0)]
+    rings, found = len(sides), []
+    for whole in (None, [True, False]):
+        network, beside, _ = body_in_pads(body, patches, STACK, sides, whole=whole)
+        assert beside.shape == (len(network.rates), 2 * rings)
+        ports = np.concatenate((network.ports[:, [0, 1, 2, 3]], beside[:, :rings]), axis=1)
+        found.append(impedance(network.rates, ports))
+        if whole:
+            assert not beside[:, rings:].any() and not network.ports[1:, 4:][network.rates[1:] > 10].any()
+    most = np.sqrt(np.einsum("sii,sjj->sij", found[0], found[0]))
+    assert np.abs((found[1] - found[0]) / most).max() < 2e-3
+
+
 @pytest.mark.parametrize(
     "shape", ["box", *(pytest.param(each, marks=pytest.mark.slow) for each in ("ball", "rod"))]
 )

@@ -21,6 +21,7 @@ from thermograsp.thermal.kernels import (
     box_samples,
     box_side,
     contact_patterns,
+    ports_told,
     tip,
     tip_at,
     touch_sides,
@@ -171,6 +172,28 @@ def test_few_patterns_are_combinations_of_all(film: float) -> None:
         np.testing.assert_allclose(
             few.heat, every.heat @ turn, rtol=0, atol=1e-11 * float(np.abs(every.heat).max())
         )
+
+
+@pytest.mark.parametrize("film", [0.0, 10.0])
+def test_even_flows_alone_are_those_of_all_patterns(film: float) -> None:
+    """Some patches of which one port is told beside others, alike along an axis or not, and on every axis."""
+    centre = [(0.02, 0.015), (0.02, 0.015), (0.02, 0.005), (0.015, 0.005), (0.006, 0.012)]
+    patches = placed(
+        [4, 5, 5, 0, 4], centre, [(0.0045, 0.0045), *[(0.0045, 0.0045)] * 2, (0.003, 0.0045), (0.004, 0.002)]
+    )
+    basis, even = contact_patterns(SEED, FULL, 3), [False, True, True, True, False]
+    size = (0.04, 0.03, 0.01)
+    every = box_samples(size, 1.0, 2e6, film, patches, [basis] * 5)
+    few = box_samples(size, 1.0, 2e6, film, patches, [basis] * 5, even)
+    told = ports_told(5, 3, [not each for each in even])
+    assert told.columns.tolist() == [0, 1, 2, 3, 6, 9, 12, 13, 14] and told.first.tolist() == [0, 3, 4, 5, 6]
+    expected = every.impedance[:, told.columns][:, :, told.columns]
+    np.testing.assert_allclose(few.impedance, expected, rtol=0, atol=1e-11 * float(np.abs(expected).max()))
+    np.testing.assert_allclose(few.port, every.port[told.columns], rtol=1e-11)
+    if film > 0:
+        assert few.heat is not None and every.heat is not None
+        expected = every.heat[:, told.columns]
+        np.testing.assert_allclose(few.heat, expected, rtol=0, atol=1e-11 * float(np.abs(expected).max()))
 
 
 def test_a_spot_s_patterns_are_orthonormal_and_the_even_one_is_the_first() -> None:
