@@ -48,6 +48,7 @@ class TouchVectorEnv(Copied, VectorEnv[Observation, np.ndarray, np.ndarray]):
     """
 
     metadata: dict[str, Any] = {"autoreset_mode": AutoresetMode.NEXT_STEP, "render_modes": ["rgb_array"]}  # noqa: RUF012
+    _renderer: Any = None
 
     def __init__(
         self,
@@ -88,7 +89,6 @@ class TouchVectorEnv(Copied, VectorEnv[Observation, np.ndarray, np.ndarray]):
         self._attributes: dict[str, list[Any]] = {}
         self.render_mode = render_mode
         self._picture = (camera, whole_number("width", width, 1), whole_number("height", height, 1))
-        self._renderer: Any = None
 
     @property
     def spec(self) -> EnvSpec | None:  # pyright: ignore[reportIncompatibleVariableOverride]
@@ -248,7 +248,8 @@ class TouchVectorEnv(Copied, VectorEnv[Observation, np.ndarray, np.ndarray]):
         if self._renderer is not None:
             self._renderer.close()
             self._renderer = None
-        self.batch.close()
+        if "batch" in vars(self):  # gymnasium closes what has been refused, too
+            self.batch.close()
 
     def _restart(
         self, rows: list[int], seeds: list[int | None] | None = None, options: dict[str, Any] | None = None
