@@ -8,7 +8,7 @@ with the package; their grids are uniform along the slide, and the face moves by
     python studies/scenes/remembered_places.py                                 every journey on three materials
     python studies/scenes/remembered_places.py slow fast --materials glass --most 2 4 6 8 12
     python studies/scenes/remembered_places.py --volumes                       slides beside finite volumes
-    python studies/scenes/remembered_places.py --cost                          us an update, ms of a new place
+    python studies/scenes/remembered_places.py --cost [--mesh] [--padded]      us an update, ms of a new place
 """
 
 from __future__ import annotations
@@ -25,9 +25,10 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 from touch_volumes import GAMMA, HALF, STACK, Body, Grid, block, body, element, face, lines
 
-from thermograsp.thermal import Material, material
+from thermograsp.thermal import Material, Surround, material
+from thermograsp.thermal.padded import RINGS
 from thermograsp.thermal.surfaces import Solid, SolidPart
-from thermograsp.touch.contacts import AREA, CLOSED, COLUMNS, CONDUCTANCE, LENGTH, NORMAL, PLACE
+from thermograsp.touch.contacts import AREA, BESIDE, CLOSED, COLUMNS, CONDUCTANCE, LENGTH, NORMAL, PLACE
 from thermograsp.touch.heat import JoinedHeat
 from thermograsp.touch.heat.places import BodyField, Place
 from thermograsp.touch.scene import BodyShape, PadPlace
@@ -38,6 +39,7 @@ SIZE = (0.02, 0.04, 0.04)
 WARM, COOL = 36.0, 24.0  # °C
 MATERIALS = "glass", "wood", "stainless_steel"
 MOST = 2, 4, 6, 8, 12
+RING_AREA = 1e-4  # m2, of each ring of a pad that touches
 MANY = 1000
 MM = 1e-3
 
@@ -110,10 +112,14 @@ def shape_of(name: str, mesh: bool) -> BodyShape:
     return BodyShape(name, 0, (), material(name), COOL, size, middle, turn, size, surface, solid=solid)
 
 
-def heat_of(shape: BodyShape, fingertips: int, film: float = 0.0) -> JoinedHeat:
-    """Of so many fingertips, on the faces in turn."""
+def heat_of(shape: BodyShape, fingertips: int, film: float = 0.0, padded: bool = False) -> JoinedHeat:
+    """Of so many fingertips, on the faces in turn. padded: with silicone around their sensors."""
+    around = Surround().around(STACK) if padded else None
     pads = tuple(
-        PadPlace(f"tip{f}", 0, (), np.zeros(3), np.eye(3), np.full(2, 0.02), STACK, WARM)
+        PadPlace(
+            *(f"tip{f}", 0, (), np.zeros(3), np.eye(3), np.full(2, 0.02), STACK, WARM),
+            surround=around,
+        )
         for f in range(fingertips)
     )
     return JoinedHeat(pads, (), (shape,), worlds=1, dt=STEP, tolerance=0.05, film=film, ambient=COOL)
@@ -323,13 +329,15 @@ def beside_volumes(
     )
 
 
-def cost(most: int, fingertips: int, mesh: bool) -> dict[str, object]:
+def cost(most: int, fingertips: int, mesh: bool, padded: bool = False) -> dict[str, object]:
     """us of an update under a held contact, states, and ms of a step in which every fingertip has a new place."""
     shape, places = shape_of("glass", mesh), [(4.5 * y, 4.5 * z) for y in range(-3, 4) for z in range(-3, 4)]
     with remembering(most):
-        heat, spent, touches = heat_of(shape, fingertips), [], np.zeros(0)
+        heat, spent, touches = heat_of(shape, fingertips, padded=padded), [], np.zeros(0)
         for y, z in places[: most + 12]:
             touches = touching(fingertips, True, y * MM, z * MM, 3e3)
+            if padded:  # W/K, m2 and steps of each ring
+                touches[0, :, 0, BESIDE : BESIDE + 3 * RINGS] = [300.0 * RING_AREA, RING_AREA, 1.0] * RINGS
             begun = time.process_time()
             heat.advance(touches, 1)
             spent.append(time.process_time() - begun)
@@ -340,7 +348,7 @@ def cost(most: int, fingertips: int, mesh: bool) -> dict[str, object]:
                 heat.advance(touches, 1)
             shortest = min(shortest, (time.process_time() - begun) / 2000)
     return {
-        "shape": "mesh" if mesh else "box",
+        "shape": ("mesh" if mesh else "box") + (", padded" if padded else ""),
         "fingertips": fingertips,
         "most": most,
         "update_us": round(1e6 * shortest, 2),
@@ -360,12 +368,13 @@ def main() -> None:
     parser.add_argument("--film", type=float, default=0.0, help="W/(m2 K) of the air")
     parser.add_argument("--volumes", action="store_true", help="beside finite volumes")
     parser.add_argument("--cost", action="store_true", help="what it costs")
+    parser.add_argument("--padded", action="store_true", help="with silicone around the sensors, for --cost")
     options = parser.parse_args()
     if options.cost:
-        cost(2, 1, options.mesh)  # which compiles
+        cost(2, 1, options.mesh, options.padded)  # which compiles
         for fingertips in (1, 2):
             for most in options.most:
-                print(cost(most, fingertips, options.mesh), flush=True)
+                print(cost(most, fingertips, options.mesh, options.padded), flush=True)
         return
     for name in options.materials:
         if options.volumes:

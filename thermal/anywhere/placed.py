@@ -24,7 +24,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..kernels import GRASP, OF_GRASP, TIMES, TO_MOMENTS, Tip, Told, at_rates, before, ports_told
+from ..kernels import OF_GRASP, TIMES, TO_MOMENTS, Tip, Told, at_rates, before, ports_told
 from ..matter import SensorStack
 from ..meshes import PLATE, PLATE_MATERIAL, BodyModes, Film, TouchedBody, body_modes, film_of, geometry_of
 from ..network import ThermalNetwork
@@ -38,6 +38,7 @@ from .ports import LEVEL, centred_tip
 from .slow import (
     SlowStates,
     crossover_time,
+    modal_impedance,
     modal_kernel,
     modal_share,
     slow_states,
@@ -125,11 +126,6 @@ class FaceImpedance(NamedTuple):
     told: Told
     impedance: np.ndarray
 
-    def ports(self, place: int) -> slice:
-        """Which of those told are a place's."""
-        first = int(self.told.first[place])
-        return slice(first, first + (1 if self.told.even[place] else LEVEL.patterns))
-
 
 def face_impedance(
     body: Solid,
@@ -150,8 +146,7 @@ def face_impedance(
     taus = modes.diffusivity * TIMES
     kernel = modal_kernel(seen, modes.rates, taus)
     over = modal_share(crossover_time(modes, len(body.parts)))[:, None, None]
-    found = FaceImpedance(modes, one, places, told, np.zeros((len(GRASP), len(seen), len(seen))))
-    at = [found.ports(n) for n in range(len(places))]
+    at = [told.of(n) for n in range(len(places))]
     if len(body.parts) == 1:
         conductivity = body.parts[0].material.conductivity
         below = [place.below for place in places]
@@ -188,7 +183,7 @@ def face_impedance(
             impedance[:, ports, ports] = place.impedance[:, few, few]
     for n, m, pair in grids:
         impedance[:, at[n], at[m]], impedance[:, at[m], at[n]] = pair, pair.transpose(0, 2, 1)
-    return found._replace(impedance=impedance)
+    return FaceImpedance(modes, one, places, told, impedance)
 
 
 def ringed_network(
@@ -217,16 +212,15 @@ def _fitted(
 ) -> ThermalNetwork:
     """The slow states and what fades sooner, of an impedance less that of the former: of the faces' F ports, then of
     others."""
-    modes, one, ports = found.modes, found.one, slow.network.ports
-    faces = found.told.first
-    alone = impedance[:, faces, faces] + _by_itself(slow.held.T[found.told.columns[faces]], slow.fades)
-    weight = np.min([1 / (1 / one.weight + each) for each in alone.T], axis=0)
+    modes, one, ports, columns = found.modes, found.one, slow.network.ports, found.told.columns
+    even, faces = found.told.first, len(columns)
+    alone = impedance[:, even[:, None], even] + modal_impedance(slow.held.T[columns[even]], slow.fades)
+    weight = np.min([1 / (1 / one.weight + alone[:, n, n]) for n in range(len(even))], axis=0)
     slowest = max(modes.diffusivity * modes.rates[: state_count(modes)][-1], LEVEL.slowest)
     number = max(4, math.ceil(math.log(LEVEL.fastest / slowest) / math.log(level.pitch)) + 1)
     fading, told = at_rates(impedance, replace(LEVEL, rates=number, slowest=slowest), weight)
-    sooner, behind = np.zeros((len(fading), ports.shape[1])), len(told.T) - len(found.told.columns)
-    sooner[:, found.told.columns] = told[:, : len(found.told.columns)]
-    sooner[:, ports.shape[1] - behind :] = told[:, len(found.told.columns) :]
+    sooner = np.zeros((len(fading), ports.shape[1]))
+    sooner[:, columns], sooner[:, len(found.places) * LEVEL.patterns :] = told[:, :faces], told[:, faces:]
     none = np.zeros(len(fading))
     return ThermalNetwork(
         np.concatenate((slow.network.rates, fading)),
@@ -234,8 +228,3 @@ def _fitted(
         slow.network.direct,
         {name: np.concatenate((row, none)) for name, row in slow.network.outputs.items()},
     )
-
-
-def _by_itself(ports: np.ndarray, rates: np.ndarray) -> np.ndarray:
-    """(S, P) K/W at GRASP of ports (P, K) of states of these rates, each by itself."""
-    return 1 / (GRASP[:, None] + rates) @ (ports * ports).T

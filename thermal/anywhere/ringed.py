@@ -86,7 +86,7 @@ def body_in_pads(
     areas = np.array([np.diff(each.areas) for each in around.values()]).ravel()
     some = areas > _LEAST * stack.face_area
     early = some * before(modes.diffusivity) / (modes.capacity * np.where(some, areas, 1.0))
-    seen = np.array([each.rings for each in around.values()]).reshape(len(areas), -1)
+    seen = np.concatenate([found.places[0].seen[:0], *(each.rings for each in around.values())])
     made, slow = ringed_network(found, seen, kernel, early)
     ports, beside = made.ports, np.zeros((len(made.rates), len(patches) * rings))
     beside[:, [n * rings + r for n in around for r in range(rings)]] = ports[:, faces:]
@@ -237,12 +237,10 @@ def _turn(
 ) -> tuple[np.ndarray, np.ndarray]:
     """How a place's ports are made of flows over rectangles on a box, the face's patterns first; and which ports these
     are. after: by place, the number of its first ring."""
-    face = found.ports(place)
-    own = face.stop - face.start
-    turn = np.eye(own)
-    ports = np.arange(face.start, face.stop)
+    face = found.told.of(place)
+    own, ports = face.stop - face.start, np.arange(face.start, face.stop)
     if len(on) == 1:
-        return turn, ports
+        return np.eye(own), ports
     squares = np.eye(own + len(on) - 1)[[0, *range(own, own + len(on) - 1)]]
     areas = np.array([4 * float(half.prod()) for _, _, half in on])
     turn = np.concatenate((np.eye(own, len(squares.T)), _between(areas, squares, 0 * squares[0])))

@@ -296,6 +296,11 @@ class Told(NamedTuple):
     first: np.ndarray
     columns: np.ndarray
 
+    def of(self, patch: int) -> slice:
+        """Which of those told are a patch's."""
+        last = len(self.columns) if patch + 1 == len(self.first) else int(self.first[patch + 1])
+        return slice(int(self.first[patch]), last)
+
 
 def ports_told(count: int, patterns: int, whole: Sequence[bool] | None) -> Told:
     """Of so many patches. whole: as in box_side."""

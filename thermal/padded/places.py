@@ -108,8 +108,9 @@ def box_in_pads(
     for r, n in enumerate(padded):
         first = of_faces + r * RINGS
         areas = [float(faces.areas[n]), *around.areas[r * RINGS : (r + 1) * RINGS].tolist()]
-        face = slice(told.first[n], told.first[n] + kept), tips[n].even
-        to_rings(impedance, turn, face, range(first, first + RINGS), areas, early, first)
+        to_rings(
+            impedance, turn, (told.of(n), tips[n].even), range(first, first + RINGS), areas, early, first
+        )
     rest, port = turn.T @ impedance @ turn, box.port @ turn
     fast, ports = at_rates(rest, level, least_weight(tips, rest, port, box.rate, told.first))
     rates, ports = np.concatenate(([box.rate], fast)), np.concatenate((port[None], ports))

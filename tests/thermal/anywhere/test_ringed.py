@@ -62,6 +62,8 @@ def test_a_place_of_which_the_even_flow_is_told_is_as_any_other(sides: tuple[flo
             assert not beside[:, rings:].any() and not network.ports[1:, 4:][network.rates[1:] > 10].any()
     most = np.sqrt(np.einsum("sii,sjj->sij", found[0], found[0]))
     assert np.abs((found[1] - found[0]) / most).max() < 2e-3
+    network, beside, _ = body_in_pads(body, patches, STACK, sides, whole=[False, False])
+    assert np.isfinite(network.ports).all() and not beside.any()
 
 
 @pytest.mark.parametrize(
