@@ -197,6 +197,7 @@ def test_a_geom_that_is_only_seen_is_told_how_to_be_felt() -> None:
         (WHOLE.replace('name="whole" ', ""), False),
         (WHOLE.replace(".02 .02 .02", ".02 .02 .03"), False),
         (WHOLE.replace(SEEN, ""), False),
+        (WHOLE.replace(SEEN, 'contype="2"'), False),
     ],
 )
 def test_a_geom_that_is_seen_and_as_large_as_all_pieces_is_named(seen: str, named: bool) -> None:

@@ -122,9 +122,10 @@ def test_the_scene_may_say_itself_what_its_objects_are() -> None:
     touch.update(data)
     assert touch.objects == ("can",)
     assert touch.reading.object_temperature == {"can": pytest.approx(5.0)}
-    model, _ = hand.hand(custom='<text name="thermograsp:can" data="aluminium warm"/>')
-    with pytest.raises(InvalidValueError, match="aluminium 5.0"):
-        ThermalTouch(model, fingertips=PADS)
+    for said in ("aluminium warm", "aluminium 5 6", "aluminium shape=", "shape=can"):
+        model, _ = hand.hand(custom=f'<text name="thermograsp:can" data="{said}"/>')
+        with pytest.raises(InvalidValueError, match="aluminium 5.0"):
+            ThermalTouch(model, fingertips=PADS)
     model, _ = hand.hand(custom='<text name="thermograsp:can" data="aluminium shape=tin"/>')
     with pytest.raises(UnknownNameError, match="tin"):
         ThermalTouch(model, fingertips=PADS)

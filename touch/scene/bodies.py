@@ -199,7 +199,7 @@ def _seen_whole(model: mujoco.MjModel, shape: BodyShape) -> str:
     felt = np.concatenate([_corners(model, geom) for geom in shape.geoms])
     low, high = felt.min(axis=0), felt.max(axis=0)
     first, count = int(model.body_geomadr[shape.body]), int(model.body_geomnum[shape.body])
-    for geom in range(first, first + count):
+    for geom in sorted({*range(first, first + count)}.difference(shape.touched)):
         corners, name = _corners(model, geom), model.geom(geom).name
         off = np.abs([corners.min(axis=0) - low, corners.max(axis=0) - high])
         if name and not collides(model, geom) and np.all(off < _AS_LARGE * (high - low)):
@@ -295,10 +295,12 @@ def described_in_model(model: mujoco.MjModel) -> dict[str, ThermalBody]:
             continue
         first, count = int(model.text_adr[number]), int(model.text_size[number])
         text = bytes(model.text_data)[first : first + count].split(b"\0")[0].decode()
-        words, _, shape = (part.strip() for part in text.partition(SHAPE))
+        words, told, shape = (part.strip() for part in text.partition(SHAPE))
         try:
             made_of, *rest = words.split()
             (degrees,) = map(float, rest) if rest else (None,)
+            if told and not shape:
+                raise ValueError
         except ValueError:
             raise InvalidValueError(
                 f'<text name="{name}" data="{text}"/>: write a material, a temperature in °C if it is not the air\'s, '
