@@ -13,12 +13,13 @@ from thermograsp.lanes import LANES, add_products, put_sum
 
 from .symmetric import turn_diagonal
 
-_STEPS = 12  # at most
+_STEPS = 8  # at most, the first of which only cuts off what the first guess has outside the cone
 _SETTLED = 4e-4  # change of any residue in a step, beside columns of unit length, up to which it is the last
-_PENALTY = 5e-3  # of leaving the cone, beside columns of unit length
-_RIDGE = 1e-4  # of the first guess, without constraint
+_PENALTY = 0.0134  # of leaving the cone, beside columns of unit length
+_RIDGE = 1e-5  # of the first guess, without constraint; with less, round-off in what is wanted counts
+_CARRIED = 0.3  # of what the first guess has outside the cone
 _FREE_RIDGE = 1e-6  # of residues without constraint
-_RELAXED = 1.6
+_RELAXED = 1.7
 
 
 def passive_residues(columns: np.ndarray, wanted: np.ndarray, weight: np.ndarray) -> np.ndarray:
@@ -196,9 +197,13 @@ def _in_cone(solve, seen, inside):
     row = ports * rates
     for i in range(ports):
         turn[i, i] = 1.0
-    for _ in range(_STEPS):
+    for step in range(_STEPS):
         for i in range(ports):
             for j in range(i + 1):
+                if step == 0:
+                    for k in range(rates):
+                        dual[i, j, k] = dual[j, i, k] = inside[i, j, k]
+                    continue
                 for k in range(rates):
                     pulled[k] = seen[i, j, k] + _PENALTY * (inside[i, j, k] - dual[i, j, k])
                 for first in range(0, rates, each):
@@ -226,8 +231,8 @@ def _in_cone(solve, seen, inside):
                 for k in range(rates):
                     pulled[k] = abs(free[k] - inside[i, j, k])
                     inside[i, j, k] = free[k]
-                    dual[i, j, k] -= free[k]
-                    dual[j, i, k] = dual[i, j, k]
+                    outside = dual[i, j, k] - free[k]
+                    dual[i, j, k] = dual[j, i, k] = _CARRIED * outside if step == 0 else outside
                 if each < rates:  # of mirrored ports, what one half's changes by
                     for k in range(each):
                         pulled[k] = (pulled[k] + pulled[each + k]) / 2

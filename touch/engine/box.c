@@ -7,13 +7,14 @@ exponentials.py. */
 
 #include "heat.h"
 
-enum { MODES = 24, STEPS = 12 };
+enum { MODES = 24, STEPS = 8 };
 #define IN_AIR 0.5 /* of a sheet's faces, as touch/heat/places/bodies.py */
 #define SWITCH 0.0075 /* diffusion length squared over length squared from which eigenfunctions serve */
 #define REACH 6.0     /* diffusion lengths beyond which an image is below round-off */
-#define PENALTY 5e-3  /* of leaving the cone, beside columns of unit length */
-#define RIDGE 1e-4    /* of the first guess, without constraint */
-#define RELAXED 1.6
+#define PENALTY .0134 /* of leaving the cone, beside columns of unit length */
+#define RIDGE 1e-5    /* of the first guess, without constraint */
+#define CARRIED .3    /* of what it has outside the cone */
+#define RELAXED 1.7
 #define SETTLED 4e-4  /* change of any residue in a step from which on it is the last */
 
 /* A patch along one axis: order 1 tangential, with the patterns' nodes; order 0 a point. waves: its overlaps with eigenfunctions. */
@@ -247,9 +248,13 @@ static void residues(int rates, int wide, double* columns, const double* wanted,
     for (int i = 0; i < wide; i++) {
       for (int j = 0; j <= i; j++) {
         double *residue = AT(inside, i, j), *left = AT(dual, i, j), *from = AT(seen, i, j), pulled[rates], free[rates];
-        for (int k = 0; k < rates; k++) pulled[k] = from[k] + PENALTY * (residue[k] - left[k]);
-        mju_mulMatVec(free, solve, pulled, rates, rates);
-        for (int k = 0; k < rates; k++) left[k] = RELAXED * free[k] + (1 - RELAXED) * residue[k] + left[k];
+        if (step) {
+          for (int k = 0; k < rates; k++) pulled[k] = from[k] + PENALTY * (residue[k] - left[k]);
+          mju_mulMatVec(free, solve, pulled, rates, rates);
+          for (int k = 0; k < rates; k++) left[k] = RELAXED * free[k] + (1 - RELAXED) * residue[k] + left[k];
+        } else {
+          memcpy(left, residue, sizeof free);
+        }
         memcpy(AT(dual, j, i), left, sizeof free);
       }
     }
@@ -278,7 +283,7 @@ static void residues(int rates, int wide, double* columns, const double* wanted,
         for (int k = 0; k < rates; k++) {
           moving = greater(moving, fabs(next[k] - residue[k]));
           residue[k] = next[k];
-          AT(dual, i, j)[k] -= next[k];
+          AT(dual, i, j)[k] = (step ? 1 : CARRIED) * (AT(dual, i, j)[k] - next[k]);
         }
         memcpy(AT(dual, j, i), AT(dual, i, j), sizeof(double) * rates);
       }
