@@ -160,7 +160,7 @@ CASES = {
         {"anywhere": True},
         "kernel.advance_boxes",
         MET
-        | {"advance_fixed", "fixed_room", "_pressed", "_under", "_beside", "strayed", "free_residues"}
+        | {"advance_fixed", "fixed_room", "_pressed", "_fill_under", "_beside", "strayed", "free_residues"}
         | {"_gram", "_body", "_box_heat", "_warmth", "free_kernels"},
     ),
     "compile_fields_ahead": (

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect
+from collections import OrderedDict
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import NamedTuple
@@ -48,7 +49,7 @@ from ...thermal.kernels import (
     tip,
     tip_at,
     touched_box,
-    under_tips,
+    under_many,
 )
 from ..bodies import ObjectSpec
 from ..footprint import GraspBody
@@ -249,8 +250,9 @@ class BoxHeat:
         changed = [row for row, now in touched.items() if now != self._touched[row]]
         for row in changed:
             self._prints[row] = self._pressed(row, touched[row])
-        for row in changed:
-            self._set_box(row, touched[row])
+        under = _UNDER.of([self._asked(row, touched[row]) for row in changed])
+        for row, known in zip(changed, under, strict=True):
+            self._set_box(row, touched[row], known)
         for row, now in touched.items():
             self._set_contacts(row, now)
             set_gram(self.tables, row)
@@ -303,13 +305,18 @@ class BoxHeat:
             found.append(each)
         return tuple(found)
 
-    def _set_box(self, row: int, touched: Touched) -> None:
-        """The row's box is touched there."""
+    def _asked(self, row: int, touched: Touched) -> _Asked:
+        """What has to be known of what is under the row's fingertips."""
+        (body, film), under = self._bodies[row], touched.numbers()[: touched.pressed]
+        size = body.spec.size
+        placed = _stand_ins(self._prints[row], under, size, body.stack.width)
+        return body.material, size, film, placed
+
+    def _set_box(self, row: int, touched: Touched, under: UnderTips) -> None:
+        """The row's box is touched there. under: what is under its fingertips."""
         (body, film), numbers = self._bodies[row], touched.numbers()
         material, size, prints = body.material, body.spec.size, self._prints[row]
-        count = sum(number >= 0 for number in touched.contacts)
-        under = _under(material, size, film, _stand_ins(prints, numbers[:count], size, body.stack.width))
-        found = under.bare
+        count, found = touched.pressed, under.bare
         if len(numbers) > count:
             feet = [(prints[number].place.face, prints[number].foot) for number in numbers]
             patches = Patches(
@@ -406,14 +413,47 @@ _Placed = tuple[int, tuple[float, float], tuple[float, float], Tip]
 """A sensor's patch as in Patches, and the element on it."""
 
 
-@lru_cache(maxsize=_KEPT)
-def _under(
+_Asked = tuple[Material, tuple[float, float, float], float, tuple[_Placed, ...]]
+"""A box in air of W/(m2 K), and what is under fingertips on it."""
+
+
+class _Under:
+    """What is under fingertips on boxes: of those last asked for, `most`, it is kept."""
+
+    def __init__(self, most: int) -> None:
+        self.most = most
+        self._kept: OrderedDict[_Asked, UnderTips] = OrderedDict()
+
+    def __len__(self) -> int:
+        return len(self._kept)
+
+    def of(self, asked: Sequence[_Asked]) -> list[UnderTips]:
+        """What is under each. Those not known are made all at once, which takes less time than one after the other."""
+        new = [each for each in dict.fromkeys(asked) if each not in self._kept]
+        if new:
+            made = under_many([_box(*each) for each in new], FIXED_LEVEL)
+            self._kept.update(zip(new, made, strict=True))
+        found = [self._kept[each] for each in asked]
+        for each in asked:
+            self._kept.move_to_end(each)
+        while len(self._kept) > self.most:
+            self._kept.popitem(last=False)
+        return found
+
+    def cache_clear(self) -> None:
+        """Forgets all."""
+        self._kept.clear()
+
+
+_UNDER = _Under(_KEPT)
+
+
+def _box(
     material: Material, size: tuple[float, float, float], film: float, placed: tuple[_Placed, ...]
-) -> UnderTips:
-    """What is under fingertips on a box in air of W/(m2 K)."""
+) -> TouchedBox:
     face, centre, half, tips = zip(*placed, strict=True)
     patches = Patches(np.array(face), np.array(centre), np.array(half))
-    return under_tips(TouchedBox(material, size, film, patches, tips, len(tips)), FIXED_LEVEL)
+    return TouchedBox(material, size, film, patches, tips, len(tips))
 
 
 def _stand_ins(

@@ -101,6 +101,11 @@ class Touched:
     places: tuple[Place, ...]
     contacts: tuple[int, ...]
 
+    @property
+    def pressed(self) -> int:
+        """How many of the places are under fingertips."""
+        return sum(number >= 0 for number in self.contacts)
+
     def numbers(self) -> list[int]:
         """Of the places, those under fingertips first."""
         under = sorted(number for number in self.contacts if number >= 0)

@@ -34,11 +34,10 @@ from thermograsp.thermal.kernels.coverage import _patterns_of_both, spot_pattern
 from thermograsp.thermal.kernels.element import seen_side
 from thermograsp.thermal.kernels.excited import _along, shown_element
 from thermograsp.thermal.kernels.samples import grasp_rule
-from thermograsp.thermal.kernels.touched import _free
 
 STACK, GLASS = thermal.sensor("seed"), thermal.material("glass")
 FILM = 5.0  # W/(m2 K)
-OF_BOXES: tuple[Any, ...] = (boxes._under, grasp_rule)
+OF_BOXES: tuple[Any, ...] = (boxes._UNDER, grasp_rule)
 """What is kept of boxes whose places are known."""
 OF_PLACES: tuple[Any, ...] = (
     *OF_BOXES,
@@ -46,7 +45,6 @@ OF_PLACES: tuple[Any, ...] = (
     tip_at,
     spot_patterns,
     _patterns_of_both,
-    _free,
 )
 """What is kept of places, and of patterns of flow there."""
 OF_FACES: tuple[Any, ...] = (seen_side, shown_element, _along)

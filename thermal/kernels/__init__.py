@@ -48,7 +48,7 @@ from .glued import GluedElement, glued_element
 from .patterns import ALONG, EXPONENTS, FUNCTIONS, GRAM, JUMPS, NODES, basis_jumps, basis_shares, basis_terms
 from .samples import GRASP, MOMENTS, OF_GRASP, TIMES, TO_MOMENTS, before
 from .touch import Detail, states, touch_box, touch_sides
-from .touched import BodyResidues, TouchedBox, UnderTips, touched_box, under_tips
+from .touched import BodyResidues, TouchedBox, UnderTips, touched_box, under_many, under_tips
 
 __all__ = [
     "ALONG",
@@ -100,5 +100,6 @@ __all__ = [
     "touch_patterns",
     "touch_sides",
     "touched_box",
+    "under_many",
     "under_tips",
 ]

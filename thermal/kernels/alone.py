@@ -23,7 +23,7 @@ _SEPARATION = tuple(1 / math.prod(a - b for b in range(_NEAR) if b != a) for a i
 
 
 @lru_cache(maxsize=1)
-def _table() -> np.ndarray:
+def alone_table() -> np.ndarray:
     """(nodes, F (F + 1) / 2) of a patch of half width 1, one of a pair of functions."""
     taus = np.exp(_FIRST + np.arange((_LAST - _FIRST) * _FINE + 1) / _FINE)
     found = free_kernels(np.ones((1, 2)), np.tile(JUMPS, (1, 2, 1, 1)), NODES, taus)[0, 0]
@@ -34,7 +34,7 @@ def alone(half: np.ndarray, shares: np.ndarray, taus: np.ndarray) -> np.ndarray:
     """(A, M, M, T) m of a patch of half widths (A,) m between combinations, of shares (A, M, F) along these axes, at
     taus (T,) m2, ascending."""
     found = np.empty((len(half), shares.shape[1], shares.shape[1], len(taus)))
-    if _between(_table(), half, shares, taus, found):
+    if _between(alone_table(), half, shares, taus, found):
         return found
     both, jumps = np.tile(half[:, None], 2), np.tile((shares @ JUMPS)[:, None], (1, 2, 1, 1))
     return free_kernels(both, jumps, NODES, taus)[:, 0].copy()  # of no usual sensor
@@ -45,6 +45,20 @@ def each_alone(half: float, begun: float, spacing: float, count: int) -> np.ndar
     """(F, F, T) m between the functions along an axis of half width m, at so many times from begun m2 on, apart by
     that spacing in the logarithm."""
     return alone(np.array([half]), EACH_FUNCTION[:1], begun * np.exp(spacing * np.arange(count)))[0]
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def compiled_alone(table, function_jumps, nodes, half, shares, taus, found):
+    """Fills found (A, M, M, T) with what alone tells. table: alone_table. function_jumps: JUMPS. nodes: NODES."""
+    if _between(table, half, shares, taus, found):
+        return
+    both, jumps = np.empty((1, 2)), np.zeros((1, 2, shares.shape[1], len(nodes)))
+    for axis in range(len(half)):
+        both[:] = half[axis]
+        for m in range(shares.shape[1]):
+            for e in range(len(nodes)):
+                jumps[0, 0, m, e] = jumps[0, 1, m, e] = np.sum(shares[axis, m] * function_jumps[:, e])
+        found[axis] = free_kernels(both, jumps, nodes, taus)[0, 0]
 
 
 @njit(cache=True, short_loops=True, error_model="numpy")

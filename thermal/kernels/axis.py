@@ -141,9 +141,9 @@ def add_images(one, order, other, other_order, same, length, film, tau, out):
         return
     if total == 2 and film * scale / 2 <= _FEW:
         if low_end:
-            _strip_images(one, other, same, 0.0, 1.0, film, scale, out)
+            _strip_images(one, other, 0.0, 1.0, film, scale, out)
         if high_end:
-            _strip_images(one, other, same, 2 * length, -1.0, film, scale, out)
+            _strip_images(one, other, 2 * length, -1.0, film, scale, out)
         return
     for i in range(len(one)):
         for j in range(i + 1 if same else len(other)):
@@ -166,21 +166,16 @@ def left_inside(places, length, film, tau, out):
     """Fills out (E,) with the antiderivative along the axis of what of heat that starts there is in it at tau m2, at a
     time at which eigenfunctions need not serve."""
     scale = 2 * math.sqrt(tau)
+    low_end, high_end = places[0] <= _REACH * scale, length - places[-1] <= _REACH * scale
     for k in range(len(places)):
         out[k] = places[k]
     if film * scale / 2 <= _FEW:
-        fine, more, reach = _FINE / scale, film * scale, _REACH * scale
-        near, far = 0, len(places)
-        while near < len(places) and places[near] <= reach:
-            near += 1
-        while far > 0 and length - places[far - 1] <= reach:
-            far -= 1
-        for k in range(near):
+        fine, more = _FINE / scale, film * scale
+        for k in range(len(places) if low_end else 0):
             out[k] += scale * _soon(places[k] * fine, more)[1]
-        for k in range(far, len(places)):
+        for k in range(len(places) if high_end else 0):
             out[k] -= scale * _soon((length - places[k]) * fine, more)[1]
         return
-    low_end, high_end = places[0] <= _REACH * scale, length - places[-1] <= _REACH * scale
     for k in range(len(places)):
         if low_end:
             out[k] += _lost(places[k], scale, film, 2)
@@ -236,26 +231,18 @@ def _free_strips(one, other, scale, out):
 
 
 @njit(cache=True, inner=True, borrows=True, error_model="numpy")
-def _strip_images(one, other, same, end, side, film, scale, out):
-    """Adds to out what comes to strips by way of one end, at distances end + side (x + x')."""
-    fine, reach, first = _FINE / scale, _REACH * scale, 0
-    last = len(other)
-    if side < 0:
-        first = last
+def _strip_images(one, other, end, side, film, scale, out):
+    """Adds to out what comes to strips by way of one end, at distances end + side (x + x'). Rows of which a part is
+    reached are taken whole, by loops that become vectors."""
+    fine, more, reach = _FINE / scale, film * scale, _REACH * scale
+    nearest = other[0] if side > 0 else other[-1]
     for i in range(len(one)):
         start = end + side * one[i]
-        # of the other's nodes those within reach, fewer from one to the next or more
-        if side > 0:
-            while last > 0 and start + other[last - 1] > reach:
-                last -= 1
-        else:
-            while first > 0 and start - other[first - 1] <= reach:
-                first -= 1
-        for j in range(first, min(last, i + 1) if same else last):
-            near, lost = _soon((start + side * other[j]) * fine, film * scale)
+        if start + side * nearest > reach:
+            continue
+        for j in range(len(other)):
+            near, lost = _soon((start + side * other[j]) * fine, more)
             out[i, j] += scale * (near / 2 - lost)
-        for j in range(first, min(last, i) if same else first):
-            out[j, i] = out[i, j]
 
 
 @njit(cache=True, inner=True, borrows=True, error_model="numpy", forceinline=True)

@@ -67,6 +67,22 @@ def grasp_rule(diffusivity: float) -> Rule:
     return _rule(diffusivity, GRASP, FEW_SPACING, max(_FIRST * diffusivity, _UNFELT))
 
 
+def grasp_steps() -> tuple[np.ndarray, np.ndarray]:
+    """What compiled_grasp_rule takes."""
+    return _steps(FEW_SPACING)
+
+
+@njit(cache=True, inner=True, error_model="numpy")
+def compiled_grasp_rule(diffusivity, moments, steps, sooner):
+    """grasp_rule, for compiled callers. moments: GRASP. steps, sooner: grasp_steps."""
+    begun = max(_FIRST * diffusivity, _UNFELT)
+    first = begun / diffusivity
+    count = math.ceil(math.log(_LAST / moments[0] / first) / FEW_SPACING) + 1
+    times, to_moments, early = np.empty(count), np.empty((len(moments), count)), np.empty(len(moments))
+    _fill_rule(moments, FEW_SPACING, first, steps, sooner, times, to_moments, early)
+    return begun, times, to_moments, early
+
+
 def times_sooner(half: float) -> int:
     """How many times more, sooner ones, a patch of half width m along its shorter side has to be told at."""
     return max(math.ceil(2 * math.log(_WIDE / half) / _ELEMENT_SPACING), 0)

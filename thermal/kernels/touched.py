@@ -11,7 +11,7 @@ N: patches, A: those under fingertips, L: the others, M: patterns of each, T: ti
 
 from __future__ import annotations
 
-import math
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -21,14 +21,13 @@ from thermograsp.compiled import njit
 
 from ..matter import Material
 from ..numerics import compiled_residues, free_residues
-from .alone import alone
+from .alone import alone_table, compiled_alone
 from .axis import SWITCH
 from .box import Patches, box_kernel, compiled_kernel
 from .contact import Resolution, Tip, fades
-from .patterns import NODES, basis_terms
-from .samples import FEW_SPACING, GRASP, at_moments, grasp_rule
+from .patterns import JUMPS, NODES, basis_terms
+from .samples import GRASP, at_moments, compiled_grasp_rule, grasp_rule, grasp_steps
 
-_AT_ONCE = 6  # steps in which a patch's kernel by itself is told for few times or many
 _HEAT_RIDGE = 1e-8  # of the heat's residues, beside columns of about unit length
 _SEEN_LEAST = 1e-3  # of the largest resistance, beside one that a port hardly sees
 
@@ -127,40 +126,79 @@ def touched_box(box: TouchedBox, level: Resolution, under: UnderTips | None = No
 
 def under_tips(box: TouchedBox, level: Resolution) -> UnderTips:
     """Of a box all of whose patches are under fingertips."""
-    material, size, film, patches, tips, _ = box
-    capacity, fit = material.volumetric_heat_capacity, _fit(level)
-    diffusivity = material.conductivity / capacity
-    begun, times, to_grasp, early = grasp_rule(diffusivity)
-    images = math.log(SWITCH * max(size) ** 2 / begun) / FEW_SPACING  # times at which these serve, about
-    soon = _AT_ONCE * (max(int(images) + 2, 0) // _AT_ONCE + 1)
-    halves = zip(tips, patches.half.tolist(), strict=True)
-    rates, port, held, residues, rows, (opened, returned), weight = _under(
-        np.array(size),
-        film / material.conductivity,
-        capacity,
-        diffusivity,
-        times,
-        *patches,
+    return under_many([box], level)[0]
+
+
+def under_many(boxes: Sequence[TouchedBox], level: Resolution) -> list[UnderTips]:
+    """The same of many at once, which takes less time for each."""
+    fit, kept, tips = _fit(level), level.patterns, [one for box in boxes for one in box.tips]
+    first = np.cumsum([0, *(len(box.tips) for box in boxes)])
+    sizes = np.array([box.size for box in boxes])
+    matter = np.array(
+        [(box.film, box.material.conductivity, box.material.volumetric_heat_capacity) for box in boxes]
+    )
+    ports = [kept * len(box.tips) for box in boxes]
+    places = np.cumsum([0, *(_room(each, level.rates) for each in ports)])
+    told = np.zeros(places[-1])
+    _fill_under(
+        first,
+        sizes,
+        matter,
+        *(np.concatenate(each) for each in zip(*(box.patches for box in boxes), strict=True)),
         NODES,
+        JUMPS,
+        alone_table(),
+        np.array([one.shares for one in tips]),
         np.array([one.jumps for one in tips]),
-        np.array([_free(one, (x, y), begun, soon) for one, (x, y) in halves]),
-        basis_terms(level.patterns),
-        to_grasp,
-        early,
-        GRASP,
-        # before the first time a patch by itself is on a half-space
-        1 / (capacity * math.sqrt(math.pi * begun)),
-        film,
         np.array([one.weight for one in tips]),
+        np.array([one.even for one in tips]),
+        np.array([_mirrored(box) for box in boxes]),
+        basis_terms(kept),
+        GRASP,
+        *grasp_steps(),
         fit.fades,
-        _mirrored(box),
-        np.concatenate([one.even for one in tips]),
-        capacity * math.prod(size),
         fit.seen,
         fit.share,
+        places,
+        told,
+    )
+    starts = places.tolist()
+    return [
+        _told(told[start:end], each, level.rates)
+        for start, end, each in zip(starts, starts[1:], ports, strict=False)
+    ]
+
+
+def _room(ports: int, rates: int) -> int:
+    """How many numbers _told takes."""
+    samples = len(GRASP)
+    return 3 + ports + samples + (ports + 1) * rates + ports * ports * (rates + samples) + samples * ports
+
+
+def _told(numbers: np.ndarray, ports: int, rates: int) -> UnderTips:
+    """From numbers one after the other, as _fill_under has them."""
+    samples, square = len(GRASP), ports * ports
+    rate, slowest, held = numbers[:3].tolist()
+    port = 3 + ports
+    weight = port + samples
+    heat = weight + ports * rates
+    still = heat + rates
+    residues = still + square * rates
+    opened = residues + samples * square
+    bare = BodyResidues(
+        rate,
+        numbers[3:port],
+        held,
+        numbers[still:residues].reshape(ports, ports, rates),
+        numbers[weight:heat].reshape(ports, rates),
+        numbers[heat:still],
     )
     return UnderTips(
-        BodyResidues(rates[0], port, held, residues, rows[:-1], rows[-1]), opened, returned, rates[1], weight
+        bare,
+        numbers[residues:opened].reshape(samples, ports, ports),
+        numbers[opened:].reshape(samples, ports),
+        slowest,
+        numbers[port:weight],
     )
 
 
@@ -172,64 +210,92 @@ def _mirrored(box: TouchedBox) -> bool:
     return face[0] == face[1] ^ 1 and centre[0] == centre[1] and half[0] == half[1]
 
 
-@lru_cache(maxsize=1024)
-def _free(one: Tip, half: tuple[float, float], begun: float, count: int) -> np.ndarray:
-    """What box_kernel takes of one patch, at so many times from begun m2 on."""
-    return alone(np.array(half), one.shares, begun * _steps(count))
-
-
-@lru_cache(maxsize=64)
-def _steps(count: int) -> np.ndarray:
-    return np.exp(FEW_SPACING * np.arange(count))
-
-
 @njit(cache=True, error_model="numpy")
-def _under(
-    size,
-    outside,
-    capacity,
-    diffusivity,
-    times,
+def _fill_under(
+    first,
+    sizes,
+    matter,
     face,
     centre,
     half,
     nodes,
+    function_jumps,
+    table,
+    shares,
     jumps,
-    free,
-    terms,
-    to_grasp,
-    early,
-    moments,
-    alone,
-    film,
     weight,
-    columns,
-    mirrored,
     even,
-    whole,
+    mirrored,
+    terms,
+    moments,
+    steps,
+    sooner,
+    columns,
     seen,
     share,
+    starts,
+    told,
 ):
-    """What under_tips tells: the slowest rate, and that under a film that covers the patches too; ports, held,
-    residues; rows (A M + 1, K) of the heat, the last of what follows the air; opened and returned; weight. outside:
-    1/m, the film over the conductivity. capacity: J/(m3 K), and whole: J/K, the box's. alone: K m2/J. columns: fades.
+    """Writes what _told reads into told, each box's from its place in starts (B + 1,) on. first: (B + 1,), its tips
+    among all. sizes: (B, 3) m. matter: (B, 3) W/(m2 K) of the film, W/(m K), J/(m3 K). function_jumps: JUMPS. table,
+    shares: as in compiled_alone. weight: (N, S), jumps, even: of the tips. steps, sooner: grasp_steps. columns: fades.
     The rest as in compiled_kernel, _samples and _warmed."""
-    taus = np.empty(len(times))
-    for t in range(len(times)):
-        taus[t] = diffusivity * times[t]
-    kernel, slowest, port, held, heat = compiled_kernel(
-        *(size, outside, capacity, taus, face, centre, half, np.zeros(len(face), np.bool_)),
-        *(nodes, jumps, free, terms, len(face), 0),
-    )
-    slowest *= diffusivity
-    rest, warmth, counts, lasting, opened, returned = _samples(
-        kernel, heat, port, to_grasp, early, moments, alone, half, slowest, held, film, weight
-    )
-    found = compiled_residues(columns, rest, counts, mirrored)
-    rows = np.zeros((len(port) + 1, len(share)))
-    if film > 0.0:
-        _warmed(found, warmth, even, port, held, whole, seen, share, rows[:-1], rows[-1])
-    return (lasting, slowest), port, held, found, rows, (opened, returned), counts
+    samples, rates, kept = len(moments), len(share), len(terms)
+    for b in range(len(sizes)):
+        here = slice(first[b], first[b + 1])
+        size, (film, conductivity, capacity) = sizes[b], (matter[b, 0], matter[b, 1], matter[b, 2])
+        count, diffusivity = first[b + 1] - first[b], conductivity / capacity
+        ports, out = count * kept, told[starts[b] : starts[b + 1]]
+        begun, times, to_grasp, early = compiled_grasp_rule(diffusivity, moments, steps, sooner)
+        taus, images = np.empty(len(times)), 0
+        for t in range(len(times)):
+            taus[t] = diffusivity * times[t]
+            images += taus[t] <= SWITCH * size.max() ** 2
+        free = np.empty((count, 2, kept, kept, images))
+        for n in range(count):
+            one = first[b] + n
+            compiled_alone(table, function_jumps, nodes, half[one], shares[one], taus[:images], free[n])
+        kernel, slowest, port, held, heat = compiled_kernel(
+            *(size, film / conductivity, capacity, taus, face[here], centre[here], half[here]),
+            *(np.zeros(count, np.bool_), nodes, jumps[here], free, terms, count, 0),
+        )
+        slowest *= diffusivity
+        # before the first time a patch by itself is on a half-space
+        alone = 1 / (capacity * np.sqrt(np.pi * begun))
+        rest, warmth, counts, lasting, opened, returned = _samples(
+            *(
+                kernel,
+                heat,
+                port,
+                to_grasp,
+                early,
+                moments,
+                alone,
+                half[here],
+                slowest,
+                held,
+                film,
+                weight[here],
+            )
+        )
+        found = compiled_residues(columns, rest, counts, mirrored[b])
+        out[0], out[1], out[2] = lasting, slowest, held
+        at = 3
+        for i in range(ports):
+            out[at + i] = port[i]
+        at += ports
+        for s in range(samples):
+            out[at + s] = counts[s]
+        at += samples
+        rows = out[at : at + (ports + 1) * rates].reshape(ports + 1, rates)
+        at += (ports + 1) * rates
+        if film > 0.0:
+            whole = capacity * size[0] * size[1] * size[2]
+            _warmed(found, warmth, even[here], port, held, whole, seen, share, rows[:-1], rows[-1])
+        for each in (found.reshape(found.size), opened.reshape(opened.size), returned.reshape(returned.size)):
+            for i in range(len(each)):
+                out[at + i] = each[i]
+            at += len(each)
 
 
 @njit(cache=True, inner=True, error_model="numpy")
@@ -408,15 +474,15 @@ def _balanced(row, total, share):
 @njit(cache=True, inner=True, borrows=True, error_model="numpy")
 def _warmed(found, heat, even, port, held, capacity, seen, share, rows, still):
     """Adds to rows (A M, K) of the heat (S, A M) that follows each port's flow: with the slowest state's, of port
-    (A M,) and held, they add up to what goes in, even (A M,). And to still (K,) J/K of what follows the air: with the
+    (A M,) and held, they add up to what goes in, even (A, M). And to still (K,) J/K of what follows the air: with the
     slowest state's they add up to the box's capacity; a rate's share is what the touched ports tell, its heat row
     squared over its resistance, as in a state. found: (A M, A M, K). seen, share: as in _Fit."""
-    rates, count = len(share), len(found)
+    rates, count, patterns = len(share), len(found), even.shape[1]
     for j in range(count):
         for s in range(len(heat)):
             for k in range(rates):
                 rows[j, k] += heat[s, j] * seen[s, k]
-        _balanced(rows[j], even[j] - held * port[j], share)
+        _balanced(rows[j], even[j // patterns, j % patterns] - held * port[j], share)
     least, whole = 0.0, 0.0
     for i in range(count):
         for k in range(rates):

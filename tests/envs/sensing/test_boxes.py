@@ -300,7 +300,7 @@ def test_however_many_sizes_and_places_are_drawn_what_is_kept_stays_the_same():
         kept.append([array.nbytes for array in heat._boxes.tables if isinstance(array, np.ndarray)])
         assert kept[0] == kept[-1] and len(heat._boxes._bodies) == 2
         assert not heat._networks.systems
-    assert boxes_module._under.cache_info().maxsize == boxes_module._KEPT
+    assert boxes_module._UNDER.most == boxes_module._KEPT
 
 
 def test_a_face_that_covers_a_part_of_the_sensor_s_is_taken_by_its_rectangle():
