@@ -47,7 +47,7 @@ from ...thermal.kernels import (
     TouchedBox,
     UnderTips,
     tip,
-    tip_at,
+    tips_at,
     touched_box,
     under_many,
 )
@@ -248,8 +248,7 @@ class BoxHeat:
         """The rows' networks are those of these places; their states are left alone."""
         # one kind of thing after the other for all rows, which the processor does in less time
         changed = [row for row, now in touched.items() if now != self._touched[row]]
-        for row in changed:
-            self._prints[row] = self._pressed(row, touched[row])
+        self._press({row: self._pressed(row, touched[row]) for row in changed})
         under = _UNDER.of([self._asked(row, touched[row]) for row in changed])
         for row, known in zip(changed, under, strict=True):
             self._set_box(row, touched[row], known)
@@ -291,19 +290,32 @@ class BoxHeat:
         """Puts the heat that a fingertip's states (n,) have by one row and not by the other into its slowest."""
         state[0] += ((before - after) * state).sum() / after[0]
 
-    def _pressed(self, row: int, touched: Touched) -> tuple[_Print, ...]:
-        """What is pressed on each of the places; those that it knows already are the same."""
+    def _press(self, pressed: Mapping[int, Sequence[_Pressed]]) -> None:
+        """Makes the rows' prints, and the elements that are not known."""
+        if self._stack is None:  # no row has held a box
+            return
+        new = [(each.spot, each.foot.covered) for row in pressed.values() for each in row if each.spot]
+        made = iter(tips_at(self._stack, new, FIXED_LEVEL))
+        for row, places in pressed.items():
+            self._prints[row] = tuple(
+                _Print(each.place, each.behind, each.foot, each.tip or next(made)) for each in places
+            )
+
+    def _pressed(self, row: int, touched: Touched) -> list[_Pressed]:
+        """What is pressed on each of the places; the elements that it knows already are the same."""
         (body, _), known = self._bodies[row], self._prints.get(row, ())
         size, width, shared, found = body.spec.size, body.stack.width, not body.anywhere, []
         for number, place in enumerate(touched.places):
             # what touches the far side of a thick box shapes no pattern
             thin = size[place.face // 2] < THIN * width and not shared
             behind = opposite(place, touched.places, width) if thin else None
-            each = known[number] if number < len(known) else None
-            if each is None or each.place != place or each.behind != behind:
-                each = _print(body.material, size, place, behind, body.stack, shared)
-            found.append(each)
-        return tuple(found)
+            foot, spot, worn = _footprint(place, size, width), None, self._whole if shared else None
+            if number < len(known) and known[number].place == place and known[number].behind == behind:
+                worn = known[number].tip
+            if worn is None:
+                spot = _spot(body.material, size, place, behind, foot, width)
+            found.append(_Pressed(place, behind, foot, worn, spot))
+        return found
 
     def _asked(self, row: int, touched: Touched) -> _Asked:
         """What has to be known of what is under the row's fingertips."""
@@ -373,28 +385,34 @@ class _Print(NamedTuple):
     tip: Tip
 
 
-def _print(
+class _Pressed(NamedTuple):
+    """A print whose element may not be known: then spot is that of its patterns of flow."""
+
+    place: Place
+    behind: Place | None
+    foot: Footprint
+    tip: Tip | None
+    spot: Spot | None
+
+
+def _spot(
     material: Material,
     size: tuple[float, float, float],
     place: Place,
     behind: Place | None,
-    stack: SensorStack,
-    shared: bool,
-) -> _Print:
-    """shared: its patterns are those of the whole face anywhere."""
-    foot = _footprint(place, size, stack.width)
-    if shared:
-        return _Print(place, behind, foot, tip(stack, _whole(stack), FIXED_LEVEL))
+    foot: Footprint,
+    width: float,
+) -> Spot:
+    """One of few: a later touch nearly as far from the ends shares its element with this one."""
     spot = Spot(
         material.conductivity,
         material.volumetric_heat_capacity,
         place.sides(size),
         size[place.face // 2],
         foot,
-        None if behind is None else _footprint(behind, size, stack.width),
+        None if behind is None else _footprint(behind, size, width),
     )
-    # few are made anew: a later touch nearly as far from the ends shares its element with this one
-    return _Print(place, behind, foot, tip_at(stack, spot.alike(stack.width), FIXED_LEVEL, foot.covered))
+    return spot.alike(width)
 
 
 def _footprint(place: Place, size: tuple[float, float, float], width: float) -> Footprint:

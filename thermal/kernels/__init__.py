@@ -41,6 +41,7 @@ from .contact import (
     residues,
     tip,
     tip_at,
+    tips_at,
 )
 from .coverage import THIN, Footprint, Spot, contact_patterns, touch_patterns
 from .element import Rectangle, element, element_samples
@@ -96,6 +97,7 @@ __all__ = [
     "states",
     "tip",
     "tip_at",
+    "tips_at",
     "touch_box",
     "touch_patterns",
     "touch_sides",

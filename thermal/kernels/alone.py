@@ -12,6 +12,7 @@ from functools import lru_cache
 import numpy as np
 
 from thermograsp.compiled import njit
+from thermograsp.lanes import LANES, put_sum
 
 from .axis import free_kernels
 from .patterns import EACH_FUNCTION, JUMPS, NODES
@@ -24,10 +25,11 @@ _SEPARATION = tuple(1 / math.prod(a - b for b in range(_NEAR) if b != a) for a i
 
 @lru_cache(maxsize=1)
 def alone_table() -> np.ndarray:
-    """(nodes, F (F + 1) / 2) of a patch of half width 1, one of a pair of functions."""
+    """(nodes, F (F + 1) / 2) of a patch of half width 1, one of a pair of functions; zeros fill the last lanes."""
     taus = np.exp(_FIRST + np.arange((_LAST - _FIRST) * _FINE + 1) / _FINE)
     found = free_kernels(np.ones((1, 2)), np.tile(JUMPS, (1, 2, 1, 1)), NODES, taus)[0, 0]
-    return np.ascontiguousarray(found[np.tril_indices(len(JUMPS))].T)
+    pairs = found[np.tril_indices(len(JUMPS))].T
+    return np.ascontiguousarray(np.pad(pairs, ((0, 0), (0, -pairs.shape[1] % LANES))))
 
 
 def alone(half: np.ndarray, shares: np.ndarray, taus: np.ndarray) -> np.ndarray:
@@ -82,11 +84,8 @@ def _between(table, half, shares, taus, found):
                 for b in range(_NEAR):
                     weight *= 1.0 if b == a else place - first - b
                 weights[a] = weight
-            for i in range(len(pairs)):
-                pairs[i] = 0.0
-            for a in range(_NEAR):
-                for i in range(len(pairs)):
-                    pairs[i] += weights[a] * table[first + a, i]
+            for i in range(0, len(pairs), LANES):
+                put_sum(pairs, i, table, first * len(pairs) + i, len(pairs), weights, 0, _NEAR)
             i = 0
             for f in range(functions):
                 for g in range(f + 1):
@@ -98,8 +97,9 @@ def _between(table, half, shares, taus, found):
                 for g in range(functions):
                     part[g] = 0.0
                 for f in range(functions):
-                    for g in range(functions):
-                        part[g] += shares[w, m, f] * whole[f, g]
+                    share = shares[w, m, f]
+                    for g in range(functions if share != 0.0 else 0):
+                        part[g] += share * whole[f, g]
                 for n in range(m + 1):
                     value = 0.0
                     for g in range(functions):

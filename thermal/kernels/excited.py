@@ -12,8 +12,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from thermograsp.compiled import njit
+from thermograsp.lanes import LANES, put_sum
 
-from ..numerics import dot, factor, solve_factored
+from ..numerics import dot, solve_many
 from .alone import each_alone
 from .axis import MODES, SWITCH
 from .box import Patches, box_kernel
@@ -141,7 +142,10 @@ def _of_face(
     """(S, P, P) K/W of a box under one patch at SHOWN, area m2 of a face of m2. first, second: (F, F, T) m along its
     axes. along: (P, 2), as ALONG. depth: m of the box. The rest as in excited_alone and Rule."""
     known, count = len(gram), len(times)
-    found, deep, kernel = np.empty((len(moments), known, known)), np.empty(count), np.empty(count)
+    # of pairs of patterns; zeros fill the last lanes
+    pairs = -(-known * (known + 1) // 2 // LANES) * LANES
+    deep, kernel, summed = np.empty(count), np.zeros((count, pairs)), np.empty(pairs)
+    slowest, found = np.empty(pairs), np.empty((len(moments), known, known))
     for t in range(count):
         # of the heat at the face that it flows into, by images of it or by eigenfunctions of the depth
         tau, n, total = diffusivity * times[t], 1, 0.0
@@ -151,17 +155,24 @@ def _of_face(
             total += 2 * math.exp(-n * n * step)
             n += 1
         deep[t] = (1 + total) / (math.sqrt(math.pi * tau) if soon else depth) / (heat_capacity * area * area)
-    falling = 1 / (heat_capacity * math.sqrt(math.pi * begun) * area)
+    falling, pair = 1 / (heat_capacity * math.sqrt(math.pi * begun) * area), 0
     for i in range(known):
         for j in range(i + 1):
             # all of the box as warm
-            slowest = gram[0, i] * gram[0, j] / (heat_capacity * face * depth)
+            slowest[pair] = gram[0, i] * gram[0, j] / (heat_capacity * face * depth)
             one, other = first[along[i, 0], along[j, 0]], second[along[i, 1], along[j, 1]]
             for t in range(count):
-                kernel[t] = one[t] * other[t] * deep[t] - slowest
-            for s in range(len(moments)):
-                value = early[s] * falling * gram[i, j] + slowest / moments[s]
-                found[s, i, j] = found[s, j, i] = value + dot(to_moments[s], kernel)
+                kernel[t, pair] = one[t] * other[t] * deep[t] - slowest[pair]
+            pair += 1
+    for s in range(len(moments)):
+        for n in range(0, pairs, LANES):
+            put_sum(summed, n, kernel, n, pairs, to_moments, s * count, count)
+        pair = 0
+        for i in range(known):
+            for j in range(i + 1):
+                value = early[s] * falling * gram[i, j] + slowest[pair] / moments[s]
+                found[s, i, j] = found[s, j, i] = value + summed[pair]
+                pair += 1
     return found
 
 
@@ -177,48 +188,48 @@ def _excited_alone(element, area, conductances, gram, evenness, orthonormal, kep
 @njit(cache=True, error_model="numpy")
 def _excited(box, elements, areas, conductances, gram, evenness, orthonormal, kept):
     """The same. orthonormal: (P, P), from orthonormal patterns' coefficients to those of the patterns."""
-    count, moments, known = elements.shape[:3]
-    cases = moments * len(conductances)
-    flows = np.zeros((count, cases * (2 if count > 1 else 1), known))
-    both, flow = np.empty((count * known, count * known)), np.empty(count * known)
-    at = 0
-    for s in range(moments):
-        for h in conductances:
-            for n in range(count):
-                _joined(both[:known, :known], box[s], elements[:, s], n, 1, h * areas, gram)
-                for i in range(known):
-                    flow[i] = gram[0, i]
-                factor(both[:known, :known])
-                solve_factored(both[:known, :known], flow[:known])
-                for i in range(known):
-                    flows[n, at, i] = flow[i]
-            if count > 1:
-                _joined(both, box[s], elements[:, s], 0, count, h * areas, gram)
-                for i in range(count * known):
-                    flow[i] = gram[0, i % known]
-                factor(both)
-                solve_factored(both, flow)
-                for i in range(count * known):
-                    flows[i // known, cases + at, i % known] = flow[i]
-            at += 1
+    count, known = elements.shape[0], len(gram)
+    cases = len(box) * len(conductances)
+    flows = np.empty((count, cases * (2 if count > 1 else 1), known))
+    for n in range(count):
+        flow = _flows(box, elements, areas, conductances, gram, n, 1)
+        for case in range(cases):
+            for i in range(known):
+                flows[n, case, i] = flow[i, case]
+    if count > 1:
+        flow = _flows(box, elements, areas, conductances, gram, 0, count)
+        for case in range(cases):
+            for i in range(count * known):
+                flows[i // known, cases + case, i % known] = flow[i, case]
     found = np.zeros((count, known, kept))
     for n in range(count):
         _most_of(flows[n], evenness, orthonormal, found[n])
     return found
 
 
-@njit(cache=True, inner=True, borrows=True, error_model="numpy")
-def _joined(both, box, elements, first, count, conducts, gram):
-    """Fills both with the impedance K/W that contacts first .. first + count - 1 see, of W/K each."""
-    known = len(gram)
-    for n in range(count):
-        for i in range(known):
-            row, of_box = both[n * known + i], box[(first + n) * known + i]
-            for j in range(count * known):
-                row[j] = of_box[first * known + j]
-            diagonal = row[n * known :]
-            for j in range(known):
-                diagonal[j] += elements[first + n, i, j] + gram[i, j] / conducts[first + n]
+@njit(cache=True, inner=True, error_model="numpy")
+def _flows(box, elements, areas, conductances, gram, first, count):
+    """(n P, cases) through contacts first .. first + count - 1 together, at each moment and conductance; some cases
+    more, which fill the last lanes, are like the last."""
+    known, cases = len(gram), len(box) * len(conductances)
+    size, lanes = count * known, -(-cases // LANES) * LANES
+    both, flow = np.empty((size, size, lanes)), np.empty((size, lanes))
+    for i in range(size):
+        n, own = first + i // known, i % known
+        for j in range(i + 1):
+            other, meet = j % known, first + j // known == n
+            for s in range(len(box)):
+                value, shared = box[s, first * known + i, first * known + j], 0.0
+                if meet:
+                    value, shared = value + elements[n, s, own, other], gram[own, other] / areas[n]
+                for k in range(len(conductances)):
+                    both[i, j, s * len(conductances) + k] = value + shared / conductances[k]
+            for c in range(cases, lanes):
+                both[i, j, c] = both[i, j, cases - 1]
+        for c in range(lanes):
+            flow[i, c] = gram[0, own]
+    solve_many(both, flow)
+    return flow
 
 
 @njit(cache=True, inner=True, error_model="numpy")

@@ -19,7 +19,7 @@ from .passive_residues import (
     port_residues,
 )
 from .reduction import Sampled, hankel_values, interpolate, sampled_fields, truncate
-from .symmetric import dot, factor, solve_factored, turn_diagonal
+from .symmetric import dot, solve_many, turn_diagonal
 
 __all__ = [
     "BOTTOM",
@@ -45,7 +45,6 @@ __all__ = [
     "compiled_residues",
     "dot",
     "erfc_inverse",
-    "factor",
     "free_residues",
     "graded_cells",
     "hankel_values",
@@ -63,7 +62,7 @@ __all__ = [
     "radial_axis",
     "rates",
     "sampled_fields",
-    "solve_factored",
+    "solve_many",
     "single_cell",
     "symmetric_axis",
     "truncate",

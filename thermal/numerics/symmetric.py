@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from thermograsp.compiled import njit
-from thermograsp.lanes import LANES, rotate
+from thermograsp.lanes import LANES, rotate, take_products
 
 from .fastmath import FAST
 
@@ -55,6 +55,33 @@ def solve_factored(lower, column):
         column[i] *= lower[i, i]
         for k in range(i):
             column[k] -= lower[i, k] * column[i]
+
+
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
+def solve_many(matrices, columns):
+    """Turns columns (N, K) into the solutions of positive definite matrices (N, N, K), of which it uses up the lower
+    half. K: whole lanes."""
+    count, many = columns.shape
+    row = count * many
+    for p in range(count):
+        for j in range(p + 1):
+            at = p * row + j * many
+            for k in range(0, many, LANES):
+                take_products(matrices, at + k, matrices, p * row + k, matrices, j * row + k, many, j)
+            for k in range(many):
+                left = matrices[p, j, k]
+                matrices[p, j, k] = 1 / math.sqrt(left) if j == p else left * matrices[j, j, k]
+    for i in range(count):
+        for k in range(0, many, LANES):
+            take_products(columns, i * many + k, matrices, i * row + k, columns, k, many, i)
+        for k in range(many):
+            columns[i, k] *= matrices[i, i, k]
+    for i in range(count - 1, -1, -1):
+        for k in range(many):
+            columns[i, k] *= matrices[i, i, k]
+        for j in range(i):
+            for k in range(many):
+                columns[j, k] -= matrices[i, j, k] * columns[i, k]
 
 
 @njit(cache=True, inner=True, error_model="numpy")
