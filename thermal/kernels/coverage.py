@@ -28,6 +28,7 @@ from .samples import SHOWN
 
 STEPS = 16  # places along a face's side between which a contact's edges are told apart
 _BLOCK = (0.04, 0.04, 0.01)  # m, a box on which they are found, narrower where the contact ends at its edges
+_ROOMY = 3.0  # of a sensor's width, that such a box is at least
 _SHEET = 5e-4  # m, thickness of another
 THIN = 0.5
 """Of the sensor's width, a box's depth from which on opposite fingertips do not shape each other's patterns."""
@@ -229,7 +230,8 @@ def _patterns(known: Element, steps: tuple[tuple[int, int], tuple[int, int]], ke
     (x0, x1), (y0, y1) = (((first / STEPS) * width, (last / STEPS) * width) for first, last in steps)
     across = shown_element(known, ((x0, x1), (y0, y1)))
     area = float(4 * half[0] * half[1])
-    size, middle = list(_BLOCK), np.zeros(2)
+    wide, (*sides, deep) = _ROOMY * width, _BLOCK
+    size, middle = [*(max(side, wide) for side in sides), deep], np.zeros(2)
     for axis, (first, last) in enumerate(steps):
         ends = first > 0, last < STEPS
         if all(ends):

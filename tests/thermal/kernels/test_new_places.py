@@ -186,3 +186,12 @@ def test_a_face_excites_what_its_box_does(spot: Spot) -> None:
     found = excited_alone(face, *made, across, 3)
     wanted = excited(shown_box((*spot.sides, spot.depth), *made, patches), across[None], patches.areas, 3)[0]
     assert np.abs(EVENNESS.T @ (found - wanted)).max() < 1e-5  # of combinations of size 1
+
+
+@pytest.mark.parametrize("width", [0.02, 0.05, 0.3])
+def test_an_even_flow_into_a_sensor_of_any_width_sees_the_same_layers(width: float) -> None:
+    """Patterns of flow were sought on a box that one of 40 mm and more is wider than, which broke the process."""
+    wide = replace(SEED, width=width)
+    found, known = (tip(each, ((0.0, each.width),) * 2, Resolution(12, 3)) for each in (wide, SEED))
+    np.testing.assert_allclose(found.impedance * found.area, known.impedance * known.area, rtol=1e-6)
+    assert np.isfinite(found.side.ports).all()
