@@ -66,6 +66,27 @@ def _sum(builder: Any, begun: Any, first: Any, stride: Any, factor: Any, ahead: 
     return builder.load(total)
 
 
+def _put_next(typingctx, out, i, a, rows, k, factors, f, count):
+    """out[i:i + 4] becomes the sum over n < count of factors[f + n] times row rows[k + n] of a, whose rows are four
+    numbers, less what it was."""
+
+    def code(context, builder, signature, values):
+        to, factor = (_place(context, builder, signature, values, n) for n in (0, 5))
+        first, row = (context.make_array(signature.args[n])(context, builder, values[n]).data for n in (2, 3))
+        row, lanes = builder.gep(row, [values[4]]), ir.Constant(values[4].type, LANES)
+        total = cgutils.alloca_once_value(builder, builder.fneg(_load(builder, to)))
+        with cgutils.for_range(builder, values[7]) as loop:
+            number = builder.sext(builder.load(builder.gep(row, [loop.index])), lanes.type)
+            lane = _load(builder, _ahead(builder, first, builder.mul(number, lanes)))
+            share = builder.load(_number(builder, _ahead(builder, factor, loop.index)))
+            product = builder.fmul(lane, _spread(builder, share), flags=_ONCE)
+            builder.store(builder.fadd(builder.load(total), product, flags=_ONCE), total)
+        _store(builder, builder.load(total), to)
+        return context.get_dummy_value()
+
+    return types.void(out, i, a, rows, k, factors, f, count), code
+
+
 def _add_products(typingctx, out, i, a, j, b, k, stride, count):
     """out[i:i + 4] += the sum over n < count of the four of a at j + n stride times those of b at k + n stride."""
     return types.void(out, i, a, j, b, k, stride, count), _products("fadd")
@@ -252,6 +273,7 @@ def _product(builder: Any, real: Any, imag: Any, other_real: Any, other_imag: An
 put: Any = intrinsic(_put)
 put_sum: Any = intrinsic(_put_sum)
 add_sum: Any = intrinsic(_add_sum)
+put_next: Any = intrinsic(_put_next)
 add_products: Any = intrinsic(_add_products)
 take_products: Any = intrinsic(_take_products)
 dot: Any = intrinsic(_dot)

@@ -13,9 +13,11 @@ import numpy as np
 from scipy.special import ive
 
 from thermograsp.compiled import njit
+from thermograsp.lanes import LANES, put_next
 
 _ERROR = 14.0  # minus its logarithm, of what is left out
 _PORTS = 3
+_NOTHING = 1e-15  # weight of a polynomial beside 1
 
 
 class Fading(NamedTuple):
@@ -61,9 +63,17 @@ def spread(
     """(T, n, P) K/J of cells seen (n,) at times s, the last the longest, after a joule through each port. Others as
     fading's."""
     scaled = _scaled(capacity, neighbours, links, sink, ports, float(times[-1]))
-    recorded = np.zeros((2 * scaled.half + 1, len(seen), _PORTS))
-    _fields(scaled.diagonal, scaled.off, scaled.neighbours, scaled.x, seen, recorded)
-    found = np.tensordot(_weights(len(recorded), scaled.fastest, times), recorded, axes=1)
+    weights = _weights(2 * scaled.half + 1, scaled.fastest, times)
+    found = np.zeros((len(times), len(seen), _PORTS))
+    itself = np.arange(len(capacity), dtype=np.int32)[:, None]
+    _fields(
+        np.hstack((itself, scaled.neighbours)),
+        np.hstack((scaled.diagonal[:, None], scaled.off)),
+        np.pad(scaled.x, ((0, 0), (0, LANES - _PORTS))),
+        seen,
+        weights,
+        found,
+    )
     return found[:, :, : ports.shape[1]] / np.sqrt(capacity[seen])[:, None]
 
 
@@ -105,24 +115,31 @@ def _weights(count: int, fastest: float, times: np.ndarray) -> np.ndarray:
     return signs * ive(orders, times[:, None] * fastest / 2)
 
 
+@njit(cache=True, inner=True, borrows=True, error_model="numpy")
+def _add_to_each(found, weights, m, now):
+    """Adds to found (T, n, 3) what there is now (3 n,), by the m-th of weights (T, D)."""
+    for t in range(len(found)):
+        weight, total = weights[t, m], found[t].reshape(len(now))
+        if abs(weight) > _NOTHING:  # soon few polynomials say all
+            for i in range(len(now)):
+                total[i] += weight * now[i]
+
+
 @njit(cache=True, error_model="numpy", short_loops=True)
-def _fields(diagonal, off, neighbours, x, seen, recorded):
-    """recorded: (D, n, 3), Chebyshev polynomials of the operator on x (N, 3), in cells seen (n,). Others as
-    _moments'."""
-    old, new = np.zeros(x.shape), x.copy()
-    for m in range(len(recorded)):
+def _fields(rows, factors, x, seen, weights, found):
+    """Adds to found (T, n, 3) Chebyshev polynomials of the operator on x (N, LANES), the last of which is nothing, by
+    weights (T, D), in cells seen (n,). rows, factors: (N, 7), of a cell itself and its neighbours in twice the scaled
+    operator."""
+    old, new, now = np.zeros(x.shape), x.copy(), np.empty(3 * len(seen))
+    for m in range(weights.shape[1]):
         for c in range(len(seen)):
             for p in range(3):
-                recorded[m, c, p] = new[seen[c], p]
+                now[3 * c + p] = new[seen[c], p]
+        _add_to_each(found, weights, m, now)
         for i in range(len(x)):
-            d = diagonal[i]
-            s0, s1, s2 = d * new[i, 0] - old[i, 0], d * new[i, 1] - old[i, 1], d * new[i, 2] - old[i, 2]
-            for k in range(6):
-                j, g = neighbours[i, k], off[i, k]
-                s0 += g * new[j, 0]
-                s1 += g * new[j, 1]
-                s2 += g * new[j, 2]
-            old[i, 0], old[i, 1], old[i, 2] = s0, s1, s2
+            put_next(
+                old, LANES * i, new, rows, rows.shape[1] * i, factors, factors.shape[1] * i, rows.shape[1]
+            )
         if m == 0:  # the first one is half of that
             for i in range(len(x)):
                 for p in range(3):
