@@ -17,7 +17,7 @@ _STEPS = 8  # at most, the first of which only cuts off what the first guess has
 _SETTLED = 4e-4  # change of any residue in a step, beside columns of unit length, up to which it is the last
 _PENALTY = 0.0134  # of leaving the cone, beside columns of unit length
 _RIDGE = 1e-5  # of the first guess, without constraint; with less, round-off in what is wanted counts
-_CARRIED = 0.3  # of what the first guess has outside the cone
+_CARRIED = 0.4  # of what the first guess has outside the cone
 _FREE_RIDGE = 1e-6  # of residues without constraint
 _RELAXED = 1.7
 

@@ -13,7 +13,7 @@ enum { MODES = 24, STEPS = 8 };
 #define REACH 6.0     /* diffusion lengths beyond which an image is below round-off */
 #define PENALTY .0134 /* of leaving the cone, beside columns of unit length */
 #define RIDGE 1e-5    /* of the first guess, without constraint */
-#define CARRIED .3    /* of what it has outside the cone */
+#define CARRIED .4    /* of what it has outside the cone */
 #define RELAXED 1.7
 #define SETTLED 4e-4  /* change of any residue in a step from which on it is the last */
 
