@@ -47,7 +47,9 @@ def test_new_places_are_made_anew(study: ModuleType) -> None:
     start = study.drawn(np.random.default_rng(0), 2, False)
     study.touches(start)[0]()
     study.forget(study.OF_PLACES)
-    for each in study.OF_PLACES:
+    assert study.OF_PLACES[0] is study.boxes._UNDER and len(study.boxes._UNDER) == 0
+    for each in study.OF_PLACES[1:]:
         assert each.cache_info().currsize == 0
     study.touches(start)[0]()
+    assert len(study.boxes._UNDER) == len(start.bodies)
     assert study.tip_at.cache_info().misses >= 4
