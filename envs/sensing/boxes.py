@@ -448,9 +448,8 @@ class _Under:
     def of(self, asked: Sequence[_Asked]) -> list[UnderTips]:
         """What is under each. Those not known are made all at once, which takes less time than one after the other."""
         new = [each for each in dict.fromkeys(asked) if each not in self._kept]
-        if new:
-            made = under_many([_box(*each) for each in new], FIXED_LEVEL)
-            self._kept.update(zip(new, made, strict=True))
+        made = under_many([_box(*each) for each in new], FIXED_LEVEL)
+        self._kept.update(zip(new, made, strict=True))
         found = [self._kept[each] for each in asked]
         for each in asked:
             self._kept.move_to_end(each)

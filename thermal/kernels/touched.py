@@ -131,6 +131,8 @@ def under_tips(box: TouchedBox, level: Resolution) -> UnderTips:
 
 def under_many(boxes: Sequence[TouchedBox], level: Resolution) -> list[UnderTips]:
     """The same of many at once, which takes less time for each."""
+    if not boxes:
+        return []
     fit, kept, tips = _fit(level), level.patterns, [one for box in boxes for one in box.tips]
     first = np.cumsum([0, *(len(box.tips) for box in boxes)])
     sizes = np.array([box.size for box in boxes])
